@@ -245,7 +245,9 @@ FormulaGiven given_of(const FormulaFound& found) {
     return std::string{buffer};
   };
   FormulaGiven given{.equation = found.form.equation, .over_learned = found.over_learned};
-  given.words = "A closed form fits: along " + model::direction_words(found.form.axis) + ", with " + found.form.words +
+  const std::string along = model::direction_words(found.form.axis);
+  const bool told = found.form.words.find(along) != std::string::npos;  // "drag of the hull, near ..." says it already
+  given.words = "A closed form fits: " + (told ? std::string{} : "along " + along + ", with ") + found.form.words +
                 ": " + found.form.equation;
   for (std::size_t k = 0; k < found.amplitude.size(); ++k) {
     const std::string name = found.amplitude.size() == 1 ? "c" : "c_" + std::to_string(k + 1);

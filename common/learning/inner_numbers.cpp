@@ -9,7 +9,7 @@
 
 #include "common/base/factors.hpp"
 #include "common/inference/feature_screen.hpp"
-#include "common/learning/pulls.hpp"
+#include "common/learning/within_factor.hpp"
 #include "common/model/learned/learned_force.hpp"
 
 namespace fathom::learning {
@@ -22,9 +22,6 @@ using likelihood::Quantity;
 constexpr int kSteps = 5;
 constexpr double kSettled = 0.02;      // rad over half of the recordings, or of the room
 constexpr double kMostTurned = 0.8;    // rad of a step over those: farther lies another line
-constexpr double kStepOfPull = 0.25;   // of the room: a step of a point or a length
-constexpr double kDifference = 0.02;   // of the room, between two pulls whose difference is a derivative
-constexpr double kLeastReach = 0.5;    // m
 constexpr double kSmallestRoom = 0.1;  // m to both sides: within less no phase goes with the place
 constexpr double kOneWave = 5.0;       // nats that two swings must be worth more than one: a frequency has its price
 
@@ -54,50 +51,26 @@ Quantity turned(Quantity quantity) {
   }
 }
 
-/// When and where: time, north, east and depth about their middles.
-struct Room {
-  std::array<double, 4> middle{}, half{};  ///< s, m
-  explicit Room(const likelihood::Problem& problem) {
-    std::array<double, 4> low{problem.t_low, 1e300, 1e300, 1e300}, high{problem.t_high, -1e300, -1e300, -1e300};
-    for (const likelihood::RunData& run : problem.runs) {
-      for (const Eigen::Vector3d& p : run.trial().p_WB) {
-        for (const std::size_t i : {1, 2, 3}) {
-          low[i] = std::min(low[i], p[static_cast<Eigen::Index>(i) - 1]);
-          high[i] = std::max(high[i], p[static_cast<Eigen::Index>(i) - 1]);
-        }
-      }
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-      middle[i] = 0.5 * (low[i] + high[i]);
-      half[i] = std::max(0.5 * (high[i] - low[i]), 0.0);
-    }
-  }
-  [[nodiscard]] Factor factor(std::size_t i) const {
-    constexpr std::array kReads{Quantity::kRamp, Quantity::kNorth, Quantity::kEast, Quantity::kDepth};
-    return {.quantity = kReads[i], .a = middle[i], .b = half[i]};
-  }
-};
-
 /// The same wave, by frequency and wave numbers, or the same point and length.
 bool same(const Factor& one, const Factor& other) {
-  if (one.quantity == Quantity::kStretch || other.quantity == Quantity::kStretch) return one == other;
+  if (has_inner(one) || has_inner(other)) return one == other;
   return travels(one.quantity) == travels(other.quantity) && one.a == other.a &&
          (!travels(one.quantity) || (one.b == other.b && one.c == other.c));
 }
 
 /// The factor of a feature that has inner numbers, if one has.
 template <typename Of>
-auto inner_of(Of& feature) -> decltype(feature.factors.data()) {
-  const auto stretch = stretch_in(feature);
-  return stretch != nullptr ? stretch : swing_of(feature);
+auto tunable_in(Of& feature) -> decltype(feature.factors.data()) {
+  const auto factor = factor_with_inner(feature);
+  return factor != nullptr ? factor : swing_of(feature);
 }
 
 /// An inner number, and what the force does by it as columns of features. Of a wave exp(-|k| z) cos(omega t - k p): by
 /// omega -t sin(..), by k +p sin(..) - z k / |k| cos(..). Time, place and depth about their middles: the rest is a
-/// change of the weights. Of a pull the difference of two.
+/// change of the weights. Of a point, a length, a bearing, a reach: differences.
 struct Inner {
   Factor factor;
-  std::size_t which{};  ///< 0 frequency, 1 and 2 wave numbers toward north and east; N, E, D and length
+  std::size_t which{};  ///< as number_of() counts: of a wave 0 frequency, 1 and 2 wave numbers toward north and east
   double unit{1.0};     ///< of its steps
   double sigma{};       ///< how far it may be from where it is; 0: nothing is known
 };
@@ -124,25 +97,27 @@ void add_column(Slopes& slopes, std::size_t place, Feature feature, double share
   slopes.columns.features.push_back(std::move(feature));
 }
 
-void slopes_of_pulls(const likelihood::FreeForce& force, const Room& room, Slopes& slopes) {
-  const double reach = std::max(std::hypot(room.half[1], room.half[2], room.half[3]), kLeastReach);
-  const double off = kDifference * reach;
-  for (std::size_t j = 0; j < force.features.size(); ++j) {
-    const Feature& feature = force.features[j];
-    const Factor* stretch = stretch_in(feature);
-    for (std::size_t i = 0; i < (stretch != nullptr ? kNumbersOfStretch : 0U); ++i) {
-      const std::size_t place = place_of(slopes, {*stretch, i, kStepOfPull * reach, reach});
-      Feature beside = feature;
-      number_of(*inner_of(beside), i) += off;
-      add_column(slopes, place, beside, force.weights[j] / off);
-      add_column(slopes, place, feature, -force.weights[j] / off);
+/// Of laws: a table keeps its places.
+void slopes_within_factors(const likelihood::FreeForce& force, const Room& room, Slopes& slopes) {
+  for (const likelihood::FeatureGroup& group : force.groups) {
+    for (int k = group.first; k < group.first + group.count && group.closed; ++k) {
+      const auto j = static_cast<std::size_t>(k);
+      const Feature& feature = force.features[j];
+      const Factor* factor = factor_with_inner(feature);
+      if (factor == nullptr) continue;
+      for (const WithinFactor& inner : inner_of(*factor, room)) {
+        const std::size_t place = place_of(slopes, {*factor, inner.which, inner.step, inner.sigma});
+        const Beside other = beside(feature, inner, room);
+        add_column(slopes, place, other.feature, force.weights[j] / other.off);
+        add_column(slopes, place, feature, -force.weights[j] / other.off);
+      }
     }
   }
 }
 
 Slopes slopes_of(const likelihood::FreeForce& force, const Room& room) {
   Slopes slopes;
-  slopes_of_pulls(force, room, slopes);
+  slopes_within_factors(force, room, slopes);
   for (std::size_t j = 0; j < force.features.size(); ++j) {
     const Factor* swing = swing_of(force.features[j]);
     if (swing == nullptr || force.features[j].count == static_cast<int>(force.features[j].factors.size())) continue;
@@ -201,12 +176,14 @@ likelihood::Fit tuned(const likelihood::Problem& problem, likelihood::Fit fit, c
       const double turn = change[static_cast<Eigen::Index>(k)] / inner.unit;
       most = std::max(most, std::abs(turn));
       for (std::size_t j = 0; j < moved.force.features.size(); ++j) {
-        const Factor* before = inner_of(fit.hypothesis.force.features[j]);
+        const Factor* before = tunable_in(fit.hypothesis.force.features[j]);
         if (before == nullptr || !same(*before, inner.factor)) continue;
-        Factor& factor = *inner_of(moved.force.features[j]);
+        Factor& factor = *tunable_in(moved.force.features[j]);
         number_of(factor, inner.which) += inner.unit * std::clamp(turn, -kMostTurned, kMostTurned);
-        factor.d = std::max(factor.d, 0.0);
       }
+    }
+    for (Feature& feature : moved.force.features) {
+      if (Factor* factor = factor_with_inner(feature)) settle(*factor, room);
     }
     if (most < kSettled) break;
     likelihood::Fit again = fitted(problem, moved, fit.noise, threads);
@@ -250,8 +227,10 @@ likelihood::FreeForce joined(const likelihood::FreeForce& force, const Room& roo
 }  // namespace
 
 likelihood::Fit with_inner_numbers(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
-  if (!fit.finite ||
-      (!model::swings(fit.hypothesis.force) && std::ranges::none_of(fit.hypothesis.force.features, &Feature::pulls)))
+  if (!fit.finite || (!model::swings(fit.hypothesis.force) &&
+                      std::ranges::none_of(fit.hypothesis.force.features, [](const Feature& feature) {
+                        return factor_with_inner(feature) != nullptr;
+                      })))
     return fit;
   const Room room{problem};
   bool any = false;

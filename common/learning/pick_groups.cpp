@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <span>
 
 #include "common/base/parallel.hpp"
 #include "common/inference/feature_screen.hpp"
 #include "common/learning/moments.hpp"
 #include "common/learning/products.hpp"
-#include "common/learning/pulls.hpp"
+#include "common/learning/profile_inner.hpp"
+#include "common/learning/within_factor.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -17,9 +20,11 @@ using inference::ColumnRange;
 using inference::GroupEvidence;
 using inference::price;
 using inference::Seen;
+using likelihood::Feature;
 
 constexpr std::size_t kShortlist = 24;  // groups whose products with all others are worked out
-constexpr std::size_t kProfiled = 4;    // of those that begin at a moment: its place is sought more closely
+constexpr std::size_t kProfiled = 4;    // of those whose moment, place or length is sought more closely
+constexpr double kWorthMoving = 5.0;    // nats, no price paid: what promises less where it stands is left there
 
 /// A group of the force that is in the model already.
 bool held(const Seen& seen, const likelihood::FreeForce& library, const likelihood::FeatureGroup& group) {
@@ -32,6 +37,38 @@ bool held(const Seen& seen, const likelihood::FreeForce& library, const likeliho
       return a.axis == b.axis && a.count == b.count && a.factors == b.factors;
     });
   });
+}
+
+/// Along each direction, of groups with inner numbers those that promise most are moved to where they are most likely,
+/// and the best of them stands for all: what stands beside it has come, or would come, to the same place. What is left
+/// beside it shows in the next round. `shortlist`: the best first. Returned are those that it stands for.
+std::vector<std::size_t> moved_to_their_places(const likelihood::Problem& problem, const Seen& seen,
+                                               const model::Scene& scene, int threads,
+                                               const std::vector<std::size_t>& shortlist, std::vector<double>& alone,
+                                               likelihood::FreeForce& library) {
+  const auto of = [&](std::size_t g) -> const likelihood::FeatureGroup& { return library.groups[g]; };
+  const auto paid = [&](std::size_t g) { return price(of(g), library.groups.size(), inference::Thresholds{}); };
+  std::map<int, std::vector<std::size_t>> along;
+  for (const std::size_t g : shortlist) {
+    const Feature& first = library.features[static_cast<std::size_t>(of(g).first)];
+    if (of(g).closed && factor_with_inner(first) != nullptr) along[of(g).axis].push_back(g);
+  }
+  std::vector<std::size_t> moved;
+  for (const auto& [axis, groups] : along) {
+    for (std::size_t k = 0; k < std::min(groups.size(), kProfiled); ++k) {
+      if (axis == model::kPull || alone[groups[k]] + paid(groups[k]) > kWorthMoving) moved.push_back(groups[k]);
+    }
+  }
+  std::map<int, std::size_t> best;
+  for (const auto& [g, evidence] : profile_inner(problem, seen, scene, Room{problem}, moved, library, threads)) {
+    alone[g] = evidence - paid(g);
+    const auto [place, fresh] = best.try_emplace(of(g).axis, g);
+    if (!fresh && alone[g] > alone[place->second]) place->second = g;
+  }
+  std::vector<std::size_t> stood_for;
+  for (const auto& [axis, g] : best)
+    std::ranges::copy_if(along[axis], std::back_inserter(stood_for), [&](std::size_t other) { return other != g; });
+  return stood_for;
 }
 
 }  // namespace
@@ -69,18 +106,8 @@ Picked pick_groups(const likelihood::Problem& problem, const Seen& seen, const m
   }
   for (const auto& [g, evidence] : profile_moments(problem, seen, begun, library, how.threads))
     alone[g] = evidence - price(library.groups[g], all, thresholds);
-  // Of pulls the one that has come to the best point: others have come to the same, or stand beside it.
-  std::vector<std::size_t> pulls;
-  for (const std::size_t g : shortlist) {
-    if (library.groups[g].axis == model::kPull) pulls.push_back(g);
-  }
-  pulls.resize(std::min(pulls.size(), kProfiled));
-  std::size_t of_pulls = all;
-  for (const auto& [g, evidence] : profile_pulls(problem, seen, scene, pulls, library, how.threads)) {
-    alone[g] = evidence - price(library.groups[g], all, thresholds);
-    if (of_pulls == all || alone[g] > alone[of_pulls]) of_pulls = g;
-  }
-  std::erase_if(shortlist, [&](std::size_t g) { return library.groups[g].axis == model::kPull && g != of_pulls; });
+  for (const std::size_t g : moved_to_their_places(problem, seen, scene, how.threads, shortlist, alone, library))
+    std::erase(shortlist, g);
   best_first();
   shortlist.resize(std::min(shortlist.size(), kShortlist));
   const inference::Screen whole = inference::screen(problem, seen, library, shortlist, true);

@@ -167,7 +167,7 @@ class Library {
       const double rms = std::sqrt(square[static_cast<Eigen::Index>(j)] / std::max(count, 1.0));
       double wrench = scene_.tau_rms.head<3>().norm();
       if (feature.axis < likelihood::kWorldAxis) wrench = scene_.tau_rms[feature.axis];
-      if (feature.axis == model::kHullDrag) wrench = of_drag;
+      if (feature.of_drag()) wrench = of_drag;
       if (feature.axis == model::kAllThrust) wrench = 1.0;
       if (feature.axis == model::kEachThruster) wrench = std::sqrt(thrust / std::max(count, 1.0));
       if (feature.levers()) wrench = scene_.tau_rms.segment<2>(3).norm();

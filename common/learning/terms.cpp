@@ -7,7 +7,6 @@
 
 #include "common/inference/feature_library.hpp"
 #include "common/inference/thruster_laws.hpp"
-#include "common/learning/edges.hpp"
 #include "common/learning/pulls.hpp"
 
 namespace fathom::learning {
@@ -16,10 +15,6 @@ namespace {
 using likelihood::Factor;
 using likelihood::Quantity;
 
-constexpr int kDepthBumps = 6, kPlanBumps = 3, kTimeSteps = 12, kFewSteps = 4;
-constexpr std::array kEdgeReaches{1.0 / 30, 1.0 / 12, 1.0 / 5};  // of the width of where it was
-constexpr double kSmallestRange = 0.05;                          // m
-constexpr double kMoves = 1e-3;                                  // m/s, rad/s: an axis that does less shows nothing
 constexpr const char* kWorldNames[3] = {"north", "east", "down"};
 
 Factor v(int axis) { return {.quantity = Quantity::kVelocity, .index = axis}; }
@@ -28,9 +23,6 @@ Factor tau(int axis) { return {.quantity = Quantity::kWrench, .index = axis}; }
 Factor size(int axis) { return {.quantity = Quantity::kWrenchSize, .index = axis}; }
 Factor f(int thruster) { return {.quantity = Quantity::kThruster, .index = thruster}; }
 Factor f_size(int thruster) { return {.quantity = Quantity::kThrusterSize, .index = thruster}; }
-Factor of(Quantity quantity, int index, double a, double b) {
-  return {.quantity = quantity, .index = index, .a = a, .b = b};
-}
 
 /// How much an actuator has done lately.
 std::vector<Factor> uses(int thruster) {
@@ -38,58 +30,6 @@ std::vector<Factor> uses(int thruster) {
   for (int bank = 0; bank < static_cast<int>(likelihood::kUseMemories.size()); ++bank)
     uses.push_back({.quantity = Quantity::kRecentUse, .index = thruster, .bank = bank});
   return uses;
-}
-
-Columns steps_in_time(const likelihood::Problem& problem, int count) {
-  Columns steps;
-  const double length = problem.t_high - problem.t_low;
-  for (int i = 0; i < count; ++i)
-    steps.push_back({of(Quantity::kAfter, 0, problem.t_low + length * (i + 0.5) / count, length / count)});
-  return steps;
-}
-
-Columns bumps_over_plan(const model::Scene& scene) {
-  Columns bumps;
-  const Eigen::Vector3d range = scene.p_high - scene.p_low;
-  const double width = std::max(range.head<2>().maxCoeff() / (kPlanBumps - 1), kSmallestRange);
-  for (int i = 0; i < kPlanBumps; ++i) {
-    for (int j = 0; j < kPlanBumps; ++j)
-      bumps.push_back({{.quantity = Quantity::kPlanBump,
-                        .a = scene.p_low.x() + range.x() * i / (kPlanBumps - 1),
-                        .b = scene.p_low.y() + range.y() * j / (kPlanBumps - 1),
-                        .c = width}});
-  }
-  return bumps;
-}
-
-/// Measured columns, about their means and over their spreads, as modulators.
-void of_columns(const likelihood::Problem& problem, std::vector<Modulator>& all) {
-  constexpr double kConstant = 1e-6;  // of its mean
-  const std::size_t count = problem.vehicle->candidates.size();
-  for (std::size_t place = 0; place < count; ++place) {
-    const auto at = static_cast<Eigen::Index>(2 * place);
-    double sum = 0.0, square = 0.0, samples = 0.0, most = 0.0;
-    const auto each = [&](const auto& use) {
-      for (const likelihood::RunData& run : problem.runs) {
-        for (const Eigen::VectorXd& columns : run.trial().columns) use(columns[at]);
-      }
-    };
-    each([&](double x) { sum += x, samples += 1.0; });
-    if (samples == 0.0) continue;
-    const double mean = sum / samples;
-    each([&](double x) { square += (x - mean) * (x - mean), most = std::max(most, std::abs(x - mean)); });
-    const double spread = std::sqrt(square / samples);
-    if (spread <= kConstant * std::abs(mean)) continue;
-    const std::string& name = problem.vehicle->candidates[place].text;
-    all.push_back({", by " + name,
-                   {{{.quantity = Quantity::kColumn,
-                      .index = static_cast<int>(place),
-                      .a = mean,
-                      .b = spread,
-                      .c = most,
-                      .column = name}}},
-                   kConstantTerm | kStreamTerm | kDragTerm | kThrustTerm | kThrusterTerm});
-  }
 }
 
 class Terms {
@@ -190,6 +130,7 @@ class Terms {
   /// All of the drag, all of the thrust, each thruster along its line.
   void together() {
     all.push_back({"the hull's drag", model::kHullDrag, {{}}, kDragTerm, true});
+    all.push_back({"the hull's drag against translation", model::kGoingDrag, {{}}, kDragTerm | kGoingTerm, true});
     all.push_back({"the whole thrust", model::kAllThrust, {{}}, kThrustTerm | kWholeTerm, true});
     Columns slow;
     for (int bank = 0; bank < static_cast<int>(likelihood::kThrustMemories.size()); ++bank)
@@ -243,62 +184,6 @@ class Terms {
 
 std::vector<Term> terms_of(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene) {
   return std::move(Terms{problem, seen, scene}.all);
-}
-
-std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const model::Scene& scene) {
-  std::vector<Modulator> all;
-  const unsigned still = kConstantTerm | kStreamTerm, base = kDragTerm | kThrustTerm;
-  const double half = std::max(0.5 * (problem.t_high - problem.t_low), 1.0);
-  const Factor ramp = of(Quantity::kRamp, 0, 0.5 * (problem.t_low + problem.t_high), half);
-  all.push_back({", growing with time", {{ramp}}, still | base | kThrusterTerm | kMassTerm});
-  all.push_back({", changing with time", steps_in_time(problem, kTimeSteps), kConstantTerm, false, true});
-  all.push_back(
-      {", changing with time", steps_in_time(problem, kFewSteps), kStreamTerm | base | kThrusterTerm, false, true});
-  const Eigen::Vector3d middle = 0.5 * (scene.p_low + scene.p_high), room = 0.5 * (scene.p_high - scene.p_low);
-  const Factor depth = of(Quantity::kDepth, 0, middle.z(), room.z());
-  const bool dives = scene.position && 2.0 * room.z() > kSmallestRange;
-  if (dives) {
-    all.push_back({", by depth", {{depth}, {depth, depth}}, still | base});
-    Columns bumps;
-    for (int i = 0; i < kDepthBumps; ++i)
-      bumps.push_back({of(Quantity::kDepthBump, 0, scene.p_low.z() + 2.0 * room.z() * i / (kDepthBumps - 1),
-                          2.0 * room.z() / (kDepthBumps - 1))});
-    all.push_back({", at depths", bumps, kConstantTerm, false});
-  }
-  if (scene.position && room.head<2>().minCoeff() > 0.5 * kSmallestRange) {
-    const Factor north = of(Quantity::kNorth, 0, middle.x(), room.x()),
-                 east = of(Quantity::kEast, 0, middle.y(), room.y());
-    all.push_back({", by place", {{north}, {east}}, still | base});
-    all.push_back({", at places", bumps_over_plan(scene), kConstantTerm, false});
-  }
-  if (scene.attitude) {
-    for (const Edge& edge : edges_of(scene)) {
-      Columns reaches;
-      for (const double share : kEdgeReaches) reaches.push_back({near(edge, share * edge.width)});
-      all.push_back({", near " + edge.words, reaches, kWorldTerm | kDragTerm | kWholeTerm, false});
-    }
-    for (int n = 1; n <= 2; ++n) {
-      const Factor cosine = of(Quantity::kHeadingCosine, n, 0.0, 1.0), sine = of(Quantity::kHeadingSine, n, 0.0, 1.0);
-      all.push_back({n == 1 ? ", by heading" : ", by twice the heading",
-                     {{cosine}, {sine}},
-                     n == 1 ? kConstantTerm | base : kConstantTerm});
-      if (dives && n == 1) all.push_back({", by heading and depth", {{cosine, depth}, {sine, depth}}, kConstantTerm});
-    }
-  }
-  all.push_back({", by the speed", {{{.quantity = Quantity::kFlowSpeed}}}, base | kThrusterTerm});
-  for (int j = 0; j < 6; ++j) {
-    if (scene.nu_rms[j] <= kMoves) continue;
-    const std::string name = model::kVelocityNames[static_cast<std::size_t>(j)];
-    all.push_back({", by " + name, {{v(j)}}, kThrustTerm});
-    all.push_back({", by |" + name + "|", {{s(j)}}, kThrustTerm | (j < 3 ? kThrusterTerm : 0U)});
-  }
-  of_columns(problem, all);
-  for (int i = 0; i < problem.simulated; ++i) {
-    const int j = problem.axes[static_cast<std::size_t>(i)];
-    const std::string name = std::string{"tau_"} + model::kAxisNames[static_cast<std::size_t>(j)];
-    all.push_back({", by |" + name + "|", {{size(j)}}, base});
-  }
-  return all;
 }
 
 }  // namespace fathom::learning

@@ -22,8 +22,11 @@ enum TermKind : unsigned {
   kThrusterTerm = 32,
   kWorldTerm = 64,   ///< a constant that is fixed in the world
   kWholeTerm = 128,  ///< the whole thrust
-  kMassTerm = 256
+  kMassTerm = 256,
+  kGoingTerm = 512  ///< the drag against translation
 };
+
+constexpr double kMoves = 1e-3;  ///< m/s, rad/s: an axis that does less shows nothing
 
 /// Something that acts along a direction.
 struct Term {

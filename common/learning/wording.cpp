@@ -1,5 +1,6 @@
 #include "common/learning/wording.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -29,6 +30,8 @@ constexpr Hint kHints[]{
     {"drag", "growing with time", "weed or fouling, or more and more line in the water"},
     {"drag", "from a moment on", "something that was caught or lost at that moment"},
     {"drag", "depth", "the surface, the bottom or a layer of other water"},
+    {"drag", "distance to a point", "line in the water that comes from there"},
+    {"force toward down", "distance to a point", "a line that comes from there and is heavier, or lighter, than water"},
     {"drag", "place", "walls, or line in the water whose length goes with the place"},
     {"thrust curve", "", "propellers, drivers or a limit of power whose curve is not that of the vehicle file"},
     {"thruster", "advance", "propellers that lose thrust as the craft moves"},
@@ -80,6 +83,15 @@ std::string swing_words(const CorrectionGiven& given) {
   return "";
 }
 
+/// Whether a law of it sets in.
+bool holds_moment(const CorrectionGiven& given) {
+  return std::ranges::any_of(given.terms, [](const CorrectionTerm& term) {
+    return term.law && std::ranges::any_of(term.factors, [](const CorrectionFactor& factor) {
+             return model::quantity_from(factor.quantity) == model::Quantity::kAfter;
+           });
+  });
+}
+
 }  // namespace
 
 std::string too_little(const std::string& what, double value, const std::string& how, double needed) {
@@ -106,6 +118,8 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
     sentence += text(" Without what depends on time, which other runs are not told, it is %.0f %% lower.",
                      100.0 * (1.0 - given.held_out_carried));
   }
+  if (given.carried && holds_moment(given))
+    sentence += " Where it sets in at a moment, other runs are told it on their own clock, as listed effects are.";
   if (given.goes_on)
     sentence +=
         " A recording whose clock goes on after these is told what had begun or grown, as it stood at their end, and "

@@ -65,6 +65,7 @@ std::string direction_words(int axis) {
   if (axis == kEachAxis) return "each axis";
   if (axis == kMass) return "the mass";
   if (axis == kPull) return "the way to a point";
+  if (axis == kGoingDrag) return "the hull's drag against translation";
   if (axis >= kLever) return std::string("the lever of weight and buoyancy in ") + "xyz"[axis - kLever];
   if (axis >= kStream) return "the water's " + direction_words(axis - kStream + kWorldAxis);
   return "thruster " + std::to_string(axis - kThrusterLine + 1);
@@ -79,6 +80,7 @@ std::string direction_symbol(int axis) {
   if (axis == kEachAxis) return "tau_i =";
   if (axis == kMass) return "m =";
   if (axis == kPull) return "f toward p_A =";
+  if (axis == kGoingDrag) return "tau_1 = -(D(nu) nu)_1";
   if (axis >= kLever) return std::string("G_") + "xyz"[axis - kLever] + " =";
   if (axis >= kStream) return "v_" + direction_words(axis - kStream + kWorldAxis) + " =";
   return "tau = b_" + std::to_string(axis - kThrusterLine + 1);
@@ -160,7 +162,7 @@ double Feature::size(const FeatureState& state) const {
 }
 
 bool Feature::moves_with_velocity() const {
-  return axis == kHullDrag || any(*this, [](const FactorKind& kind) { return kind.moves; });
+  return of_drag() || any(*this, [](const FactorKind& kind) { return kind.moves; });
 }
 
 bool Feature::depends_on_time() const {
@@ -194,6 +196,8 @@ void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) co
     wrench.head<3>() += size * state.R_WB.row(axis - kWorldAxis).transpose();
   } else if (axis == kHullDrag) {
     wrench += size * state.drag;
+  } else if (axis == kGoingDrag) {
+    wrench.head<3>() += size * state.drag.head<3>();
   } else if (axis == kAllThrust) {
     wrench += size * state.tau;
   } else if (weighs()) {
@@ -240,8 +244,6 @@ Stream FreeForce::stream(const FeatureState& state) const {
 
 bool FreeForce::streams() const { return std::ranges::any_of(features, &Feature::streams); }
 
-bool FreeForce::reads_drag() const {
-  return std::ranges::any_of(features, [](const Feature& feature) { return feature.axis == kHullDrag; });
-}
+bool FreeForce::reads_drag() const { return std::ranges::any_of(features, &Feature::of_drag); }
 
 }  // namespace fathom::model

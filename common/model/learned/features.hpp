@@ -83,15 +83,17 @@ struct Factor {
 /// force; all axes by one law, each reading its own thrust. Toward north, east and down as a velocity of the water,
 /// too, which hull and effects feel as they feel any stream, and with the acceleration of water that swings: no force
 /// that adds to others.
-/// The levers G_x, G_y, G_z of weight and buoyancy, whose moment is G x down. A mass at Bo: inertia, no weight. Last a
-/// pull on Bo toward the point of the world that its factor of kStretch names.
+/// The levers G_x, G_y, G_z of weight and buoyancy, whose moment is G x down. A mass at Bo: inertia, no weight. A pull
+/// on Bo toward the point of the world that its factor of kStretch names. Last the hull's drag against translation
+/// alone.
 constexpr int kWorldAxis = 6, kHullDrag = 9, kAllThrust = 10, kThrusterLine = 11;
 constexpr int kEachThruster = kThrusterLine + kMaxActuators, kEachAxis = kEachThruster + 1;
 constexpr int kStream = kEachAxis + 1;
 constexpr int kLever = kStream + 3;
 constexpr int kMass = kLever + 3;
 constexpr int kPull = kMass + 1;
-constexpr int kDirections = kPull + 1;
+constexpr int kGoingDrag = kPull + 1;
+constexpr int kDirections = kGoingDrag + 1;
 /// In words of a law of all thrusters or axes, in place of an index.
 constexpr int kOwn = -1;
 [[nodiscard]] std::string direction_words(int axis);  ///< "X", "north", "the hull's drag", "thruster 2"
@@ -118,6 +120,7 @@ struct Feature {
   [[nodiscard]] bool levers() const { return axis >= kLever && axis < kMass; }
   [[nodiscard]] bool weighs() const { return axis == kMass; }
   [[nodiscard]] bool pulls() const { return axis == kPull; }
+  [[nodiscard]] bool of_drag() const { return axis == kHullDrag || axis == kGoingDrag; }  ///< a share of it
   [[nodiscard]] bool moves_with_velocity() const;
   [[nodiscard]] bool depends_on_time() const;
   [[nodiscard]] bool swings() const;

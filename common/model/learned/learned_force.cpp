@@ -233,9 +233,10 @@ FreeForce without_time(const FreeForce& force) {
 }
 
 FreeForce lasting_of(const FreeForce& force) {
-  return kept_of(force, [](const FeatureGroup&, const Feature& feature) {
-    return std::all_of(feature.factors.begin(), feature.factors.begin() + feature.count, [](const Factor& factor) {
-      return !kind_of(factor.quantity).in_time || factor.quantity == Quantity::kRamp;
+  return kept_of(force, [](const FeatureGroup& group, const Feature& feature) {
+    return std::all_of(feature.factors.begin(), feature.factors.begin() + feature.count, [&](const Factor& factor) {
+      return !kind_of(factor.quantity).in_time || factor.quantity == Quantity::kRamp ||
+             (group.closed && factor.quantity == Quantity::kAfter);
     });
   });
 }

@@ -79,8 +79,8 @@ template <typename Keep>
 /// A force without what depends on time: what another run may be told. Empty where nothing else is in it.
 [[nodiscard]] FreeForce without_time(const FreeForce& force);
 
-/// What a run whose clock begins anew may be told: besides that, laws that grow with a run's time, which begin anew
-/// with it. Whether a moment came before or after that run nobody knows.
+/// What a run whose clock begins anew may be told: besides that, laws that grow with a run's time or set in at a
+/// moment, on that run's own clock, as listed effects are.
 [[nodiscard]] FreeForce lasting_of(const FreeForce& force);
 /// The same as it stands at time `t` for good: what has begun goes on, what has grown stays as large, what swings goes
 /// on in its phase. Tables over time, which tell of their own recording alone, are left out.

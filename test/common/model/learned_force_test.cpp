@@ -176,21 +176,22 @@ TEST_CASE(
   CHECK(as_it_stands(force, 1.0).features[0].value(state) == 0.0);  // not begun yet
 }
 
-TEST_CASE(
-    "learned force: a ramp begins anew with a run and ends where its recording did; a moment is told of no other "
-    "clock") {
+TEST_CASE("learned force: a ramp and a law's moment begin anew with a run, steps of a table are told of no other") {
   const Factor ramp{.quantity = Quantity::kRamp, .a = 5.0, .b = 5.0}, moment{.quantity = Quantity::kAfter, .a = 3.0};
   FreeForce force;
-  force.features = {along(0, {ramp}), along(1, {moment})};
-  force.weights = {1.0, 2.0};
-  for (int j = 0; j < 2; ++j)
-    force.groups.push_back({.kind = "test", .axis = j, .first = j, .count = 1, .closed = true});
+  force.features = {along(0, {ramp}), along(1, {moment}), along(2, {moment})};
+  force.weights = {1.0, 2.0, 3.0};
+  for (int j = 0; j < 3; ++j)
+    force.groups.push_back({.kind = "test", .axis = j, .first = j, .count = 1, .closed = j < 2});
   const FreeForce rest = lasting_of(force);
-  REQUIRE(rest.weights == std::vector<double>{1.0});
+  REQUIRE(rest.weights == std::vector<double>{1.0, 2.0});
   FeatureState state{.t = 7.0};
   CHECK(rest.features[0].value(state) == doctest::Approx(0.4));
+  CHECK(rest.features[1].value(state) == 1.0);
+  state.t = 1.0;
+  CHECK(rest.features[1].value(state) == 0.0);  // not yet, on that run's clock
   state.t = 1000.0;
-  CHECK(rest.features[0].value(state) == 1.0);
+  CHECK(rest.features[0].value(state) == 1.0);  // where its recording ended
 }
 
 TEST_CASE("learned force: the hull's drag, all thrust and a thruster's line are directions of their own") {
@@ -362,7 +363,7 @@ TEST_CASE("factors: every kind has a name of its own, words and a value") {
   CHECK_FALSE(quantity_from("no such thing"));
 }
 
-TEST_CASE("factors: nearness is 1 at an edge, falls by e per reach, and fades where no recording has been") {
+TEST_CASE("factors: nearness is 1 at an edge, falls by e per reach, doubles beyond, and fades a reach away") {
   FeatureState state;
   state.p_WB = {3.0, 4.0, 1.5};
   const Visited visited;
@@ -375,10 +376,12 @@ TEST_CASE("factors: nearness is 1 at an edge, falls by e per reach, and fades wh
                           Case{{.quantity = Quantity::kNear, .index = 0, .a = 6.0, .b = 0.5, .c = bearing}, -1.0},
                           Case{{.quantity = Quantity::kNear, .index = 1, .a = 2.0, .b = 0.5}, -0.5},
                           Case{{.quantity = Quantity::kNear, .index = 2, .a = -1.0, .b = 0.5}, -0.5},
-                          Case{{.quantity = Quantity::kNear, .index = 2, .a = -2.0, .b = 0.5}, 0.5}}) {
+                          Case{{.quantity = Quantity::kNear, .index = 2, .a = -1.6, .b = 0.5}, 0.1},
+                          Case{{.quantity = Quantity::kNear, .index = 2, .a = -2.0, .b = 0.5}, 0.5},
+                          Case{{.quantity = Quantity::kNear, .index = 2, .a = -3.5, .b = 0.5}, 2.0}}) {
     const FactorKind& kind = kind_of(Quantity::kNear);
-    CHECK(kind.value(one.factor, state) == doctest::Approx(std::exp(std::min(one.beyond, 0.0) / 0.5)));
+    CHECK(kind.value(one.factor, state) == doctest::Approx(std::min(std::exp(one.beyond / 0.5), kLawReach)));
     const double left = kind.within(one.factor, state, visited);
-    CHECK((one.beyond <= 0.0 ? left == 1.0 : left < 0.5));
+    CHECK((one.beyond <= 0.5 ? left == 1.0 : left < 0.5));
   }
 }

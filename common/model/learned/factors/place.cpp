@@ -1,4 +1,6 @@
 // Factors that read the place and the heading. Bumps fade by themselves; all headings are near one that was visited.
+#include <numbers>
+
 #include "common/model/learned/factors/factor_kind.hpp"
 
 namespace fathom::model {
@@ -23,6 +25,10 @@ double beyond_edge(const Factor& f, const FeatureState& s) {
   if (f.index == 1) return s.p_WB.z() - f.a;
   if (f.index == 2) return -s.p_WB.z() - f.a;
   return std::cos(f.c) * s.p_WB.x() + std::sin(f.c) * s.p_WB.y() - f.a;
+}
+std::string bearing_words(double bearing) {
+  const double turn = std::fmod(bearing * 180.0 / std::numbers::pi + 720.0, 360.0);
+  return std::to_string(static_cast<int>(std::lround(turn)) % 360);
 }
 std::string turns(const Factor& f) { return f.index == 1 ? "psi" : std::to_string(f.index) + " psi"; }
 
@@ -66,12 +72,19 @@ constinit const FactorKind factor_plan_bump{
 
 constinit const FactorKind factor_near{
     .word = "near",
-    .sentence = "nearness to an edge of where the recording has been: 1 there, falling exponentially",
+    .sentence = "nearness to an edge of where the recording has been: 1 there, falling exponentially, and at most 2",
     .unit = "1",
-    .value = [](const Factor& f, const FeatureState& s) { return std::exp(std::min(beyond_edge(f, s), 0.0) / f.b); },
-    .words = [](const Factor& f) { return "exp(-d / " + brief_number(f.b) + " m)"; },
-    .within = [](const Factor& f, const FeatureState& s,
-                 const Visited&) { return fade_beyond(std::max(beyond_edge(f, s) + f.b, 0.0), f.b); }};
+    .value = [](const Factor& f,
+                const FeatureState& s) { return std::min(std::exp(beyond_edge(f, s) / f.b), kLawReach); },
+    .words =
+        [](const Factor& f) {
+          const std::string to = f.index == 0 ? "(" + bearing_words(f.c) + " deg)" : std::string{};
+          return "exp(-d" + to + " / " + brief_number(f.b) + " m)";
+        },
+    .within =
+        [](const Factor& f, const FeatureState& s, const Visited&) {
+          return fade_beyond(std::max(beyond_edge(f, s) + f.b, 0.0), f.b * kLawReach / kVisitedReach);
+        }};
 
 constinit const FactorKind factor_stretch{
     .word = "stretch",
@@ -85,7 +98,8 @@ constinit const FactorKind factor_stretch{
     .words =
         [](const Factor& f) {
           const std::string point = "(" + brief_number(f.a) + ", " + brief_number(f.b) + ", " + brief_number(f.c) + ")";
-          return "max(|" + point + " - p| - " + brief_number(f.d) + " m, 0)";
+          const std::string away = "|" + point + " - p|";
+          return f.d > 0.0 ? "max(" + away + " - " + brief_number(f.d) + " m, 0)" : away;
         },
     .within =
         [](const Factor&, const FeatureState& s, const Visited& visited) {
