@@ -106,9 +106,12 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
     all.push_back({", by place", {{north}, {east}}, still | base});
     const Columns bumps = bumps_over_plan(scene);
     all.push_back({", at places", bumps, kConstantTerm, false});
-    for (const std::vector<Factor>& bump : bumps) all.push_back({", about a place", {bump}, kWorldTerm});
+    const auto sought = [&](const char* words, const std::vector<Factor>& factors, unsigned of) {
+      all.push_back({.words = words, .columns = {factors}, .of = of, .searched = true});
+    };
+    for (const std::vector<Factor>& bump : bumps) sought(", about a place", bump, kWorldTerm);
     for (const Factor& distance : distances_of(scene))
-      all.push_back({", by the distance to a point", {{distance}}, kWorldTerm | kGoingTerm});
+      sought(", by the distance to a point", {distance}, kWorldTerm | kGoingTerm);
   }
   if (scene.attitude) {
     for (const Edge& edge : edges_of(scene)) {

@@ -16,9 +16,10 @@ using likelihood::Quantity;
 constexpr int kMoments = 40, kAbout = 20;  // asked, all over the recordings and about the best
 constexpr double kFromEnd = 0.05;          // of the recordings: nearer to their ends nothing has a before
 
-Factor* moment_of(Feature& feature) {
+template <typename Of>
+auto moment_of(Of& feature) -> decltype(feature.factors.data()) {
   for (int i = 0; i < feature.count; ++i) {
-    Factor& factor = feature.factors[static_cast<std::size_t>(i)];
+    auto& factor = feature.factors[static_cast<std::size_t>(i)];
     if (factor.quantity == Quantity::kAfter) return &factor;
   }
   return nullptr;
@@ -93,6 +94,8 @@ class Profile {
 };
 
 }  // namespace
+
+bool sets_in(const Feature& feature) { return moment_of(feature) != nullptr; }
 
 std::vector<std::pair<std::size_t, double>> profile_moments(const likelihood::Problem& problem,
                                                             const inference::Seen& seen,

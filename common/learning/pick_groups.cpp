@@ -102,7 +102,8 @@ Picked pick_groups(const likelihood::Problem& problem, const Seen& seen, const m
   std::vector<std::size_t> begun;
   for (const std::size_t g : shortlist) {
     if (begun.size() == kProfiled) break;
-    if (library.groups[g].searched) begun.push_back(g);
+    const likelihood::FeatureGroup& group = library.groups[g];
+    if (group.searched && sets_in(library.features[static_cast<std::size_t>(group.first)])) begun.push_back(g);
   }
   for (const auto& [g, evidence] : profile_moments(problem, seen, begun, library, how.threads))
     alone[g] = evidence - price(library.groups[g], all, thresholds);

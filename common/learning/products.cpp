@@ -33,7 +33,7 @@ class Library {
       if (!term.held) multiply(term, {.columns = {{}}}, term.searched);
       for (const Modulator& modulator : modulators) {
         if (!allows(modulator)) continue;
-        if ((modulator.of & term.kind) != 0) multiply(term, modulator);
+        if ((modulator.of & term.kind) != 0) multiply(term, modulator, modulator.searched);
       }
       if (term.kind == kPlainTerm) continue;
       const Factor step{.quantity = Quantity::kAfter, .a = moments[k], .b = kMomentLasts};

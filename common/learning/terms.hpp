@@ -46,6 +46,7 @@ struct Modulator {
   unsigned of{};      ///< kinds of terms of which it is asked; of others it is another plain term, or costs too much
   bool closed{true};  ///< a law, not a table
   bool of_recording{false};  ///< a table over its time: it tells of no other recording
+  bool searched{false};      ///< inner numbers of it are sought in the data
 };
 
 [[nodiscard]] std::vector<Term> terms_of(const likelihood::Problem& problem, const inference::Seen& seen,

@@ -83,6 +83,27 @@ std::string swing_words(const CorrectionGiven& given) {
   return "";
 }
 
+/// Where lines are made fast, and where walls are.
+std::string place_words(const CorrectionGiven& given) {
+  std::string words;
+  for (const CorrectionTerm& term : given.terms) {
+    for (const CorrectionFactor& f : term.factors) {
+      if (!term.law) continue;
+      std::string one;
+      if (f.quantity == model::word(model::Quantity::kStretch))
+        one = text(" The point lies at N %.3g m, E %.3g m, D %.3g m", f.a, f.b, f.c) +
+              (f.d > 0.0 ? text(", %.3g m from where it begins to act.", f.d) : std::string{"."});
+      if (f.quantity == model::word(model::Quantity::kNear) && f.index == 0)
+        one = text(" The edge lies toward %.0f deg; %.3g m away from it a third is left.",
+                   std::fmod(f.c * 180.0 / std::numbers::pi + 720.0, 360.0), f.b);
+      if (f.quantity == model::word(model::Quantity::kPlanBump))
+        one = text(" The place is at N %.3g m, E %.3g m, %.3g m wide.", f.a, f.b, f.c);
+      if (words.find(one) == std::string::npos) words += one;
+    }
+  }
+  return words;
+}
+
 /// Whether a law of it sets in.
 bool holds_moment(const CorrectionGiven& given) {
   return std::ranges::any_of(given.terms, [](const CorrectionTerm& term) {
@@ -105,7 +126,8 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
                              "A force that no listed effect explains, %.1f %% of the applied force in %s, was learned "
                              "and added to the model. It goes with ",
                              100.0 * given.size, model::kAxisNames[static_cast<std::size_t>(found.size.axis)]) +
-                         with + "." + swing_words(given) + (given.formula ? " " + given.formula->words : "") +
+                         with + "." + swing_words(given) + place_words(given) +
+                         (given.formula ? " " + given.formula->words : "") +
                          " It is a correction with arguments, not a cause.";
   if (const std::string look_for = found.groups.empty() ? "" : hint_for(found.groups.front()); !look_for.empty())
     sentence += " Look for " + look_for + ".";
