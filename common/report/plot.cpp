@@ -75,12 +75,14 @@ void run(const std::string& program, const fs::path& script, const fs::path& com
   pid_t child = 0;
   const int failure = posix_spawnp(&child, name.c_str(), &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) {
+  int status = 0;
+  while (failure == 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  // Where it shows only in the child (POSIX), as it does under an emulator, that ends with this code.
+  constexpr int kNotStarted = 127;
+  if (failure != 0 || (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)) {
     throw InputError(program +
                      ": cannot be started, so the report has no pictures; install it: apt-get install gnuplot-nox");
-  }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     std::string said = contents(complaints);

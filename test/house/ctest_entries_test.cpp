@@ -42,9 +42,9 @@ TEST_CASE(R"x(ctest: a, b; "c" 'd' \e\, *f* [g [[h]=] ${i} $j @k@ #l (m) %n% ?o?
     if (entry["name"] != "house: " + std::string{kAwkward}) continue;
     found = true;
     const auto command = entry["command"].get<std::vector<std::string>>();
-    REQUIRE(command.size() == 3);
-    CHECK(command[1] == "--exactly");
-    CHECK(command[2] == kAwkward);
+    REQUIRE(command.size() >= 3);  // before it an emulator, if it was compiled for another processor
+    CHECK(command[command.size() - 2] == "--exactly");
+    CHECK(command.back() == kAwkward);
   }
   CHECK(found);
 }

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <fathom_lcm/depth_t.hpp>
 #include <optional>
@@ -241,7 +242,10 @@ TEST_CASE("channel filter: a process hears its own channels of a live bus, and i
       std::ranges::find_if(after, [&](int each) { return std::ranges::find(before, each) == before.end(); });
   REQUIRE(socket != after.end());
   socklen_t instructions = 0;  // asked like this, the kernel tells how many there are
-  REQUIRE(getsockopt(*socket, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions) == 0);
+  if (getsockopt(*socket, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions) != 0) {
+    CHECK(errno == ENOPROTOOPT);  // emulators of other processors do not hand this question on
+    return;
+  }
   CHECK(instructions == bus_program(bus, std::vector<std::string>{"DEPTH", "AHRS"}).size());
 }
 
