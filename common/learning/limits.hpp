@@ -10,6 +10,7 @@ struct Limits {
   double size{0.01};    ///< share of the applied acceleration on its worst axis: below, complete models have such rests
   double error{0.98};   ///< most of the base model's open-loop error on what was left out, geometric mean
   double carried{1.0};  ///< the same of the part that other runs are told
+  double judged{1.02};  ///< most of the error on runs that judge over the model's without it: less is chance
   double sure{1.3};     ///< standard errors by which the logarithm of that ratio lies below 0: one-sided 90 %
   double form{10.0};    ///< nats by which a closed form may lie below the table of features that it replaces
   int fewest_windows{4};

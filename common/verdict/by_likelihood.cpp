@@ -72,6 +72,14 @@ const model::LearnedForce* force_for(const learning::Learned& learned, std::span
   return later ? learned.later.get() : learned.elsewhere.get();
 }
 
+/// Share by which the open-loop error on runs that judge is larger by `after` than by `before`; below 0: smaller.
+double raises_error(const model::Vehicle& vehicle, const model::Model& before, const model::Model& after,
+                    std::span<const Trial> unseen) {
+  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(after));
+  if (windows.empty()) return 0.0;
+  return -residual::improvement(residual::predict(before, windows), residual::predict(after, windows), vehicle).value;
+}
+
 /// Where the reported numbers are not the likelihood's own, what they differ by is an error of the model that no noise
 /// tells of: it enters their deviations.
 Eigen::VectorXd with_difference(const likelihood::Fit& of, const likelihood::Fit& reported, Eigen::VectorXd sigma) {
@@ -308,6 +316,19 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   }
   learning::call_off(progress);
   const model::LearnedForce* force = force_for(learned, train, validate);
+  // No model is told that errs more, on runs that judge, than the one without what was learned: by more than chance.
+  if (force != nullptr && conclusion.reported.finite && !judged_here(train, validate)) {
+    const likelihood::Fit& without =
+        names_claim(conclusion.verdict) || helps(gain) ? conclusion.reported : conclusion.reported_base;
+    const double more = raises_error(vehicle, likelihood::model_of(without.hypothesis, input_step),
+                                     learning::as_model(learned.fit.hypothesis, input_step, force), unseen);
+    if (1.0 + more > learning.limits.judged) {
+      force = nullptr;
+      result.correction->adopted = result.correction->carried = result.correction->goes_on = false;
+      result.correction->refused = learning::too_little("error on runs that judge, over the model's without it",
+                                                        1.0 + more, "at most", learning.limits.judged);
+    }
+  }
   const likelihood::Fit& named = force != nullptr ? learned.fit : conclusion.reported;
   // Stand-ins stay where they help.
   const bool with_names = force != nullptr || names_claim(conclusion.verdict) || helps(gain);
