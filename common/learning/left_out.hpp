@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "common/base/progress.hpp"
 #include "common/learning/limits.hpp"
 #include "common/likelihood/fit.hpp"
 #include "common/model/learned/learned_force.hpp"
