@@ -31,7 +31,9 @@ Found Searching::run(const Before* before) {
     found_.base = models_.add(fit_base());
     expect(kBaseFit, 0);
   } else {
-    announce(progress_);
+    models_.expect(kFitsOfWhole);
+    expect(kScan, 1);
+    expect(kFreeForceFit, 1);
     found_.base = models_.fit_all({before->base}).front();
   }
   found_.best = found_.base;

@@ -140,6 +140,8 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     if (sought.all.fit.finite && !(free && free->fit.finite && free->log_odds > sought.all.log_odds))
       free = std::move(sought.all);
     if (sought.lasting.fit.finite) lasting = std::move(sought.lasting);
+  } else {
+    progress.expect(kSeek.phase, 0);
   }
   if (!free || !free->fit.finite) return learned;
   given.asked = true;

@@ -110,7 +110,7 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
       all.push_back({.words = words, .columns = {factors}, .of = of, .searched = true});
     };
     for (const std::vector<Factor>& bump : bumps) sought(", about a place", bump, kWorldTerm);
-    for (const Factor& distance : distances_of(scene))
+    for (const Factor& distance : distances_of(Room{problem}))
       sought(", by the distance to a point", {distance}, kWorldTerm | kGoingTerm);
   }
   if (scene.attitude) {

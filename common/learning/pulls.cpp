@@ -1,6 +1,5 @@
 #include "common/learning/pulls.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -8,15 +7,12 @@
 namespace fathom::learning {
 namespace {
 
-constexpr double kLeastReach = 0.5;  // m
 constexpr int kBearings = 8;
 
 /// Points about the middle of where it was, places in units of its reach.
 class Points {
  public:
-  explicit Points(const model::Scene& scene)
-      : middle_{0.5 * (scene.p_low + scene.p_high)},
-        reach_{std::max(0.5 * (scene.p_high - scene.p_low).norm(), kLeastReach)} {}
+  explicit Points(const Room& room) : middle_{room.middle[1], room.middle[2], room.middle[3]}, reach_{room.reach()} {}
   void add(const Eigen::Vector3d& off, double slack) {
     const Eigen::Vector3d point = middle_ + reach_ * off;
     all.push_back(
@@ -38,8 +34,8 @@ class Points {
 
 }  // namespace
 
-std::vector<model::Factor> stretches_of(const model::Scene& scene) {
-  Points points{scene};
+std::vector<model::Factor> stretches_of(const Room& room) {
+  Points points{room};
   for (const double slack : {0.0, 0.4, 0.7}) points.add(Eigen::Vector3d::Zero(), slack);
   for (const double down : {-1.5, 1.5}) points.add({0.0, 0.0, down}, 1.0);
   Points::around([&](const Eigen::Vector3d& way) {
@@ -50,8 +46,8 @@ std::vector<model::Factor> stretches_of(const model::Scene& scene) {
   return std::move(points.all);
 }
 
-std::vector<model::Factor> distances_of(const model::Scene& scene) {
-  Points points{scene};
+std::vector<model::Factor> distances_of(const Room& room) {
+  Points points{room};
   points.add(Eigen::Vector3d::Zero(), 0.0);
   Points::around([&](const Eigen::Vector3d& way) { points.add(way, 0.0); });
   return std::move(points.all);

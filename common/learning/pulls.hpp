@@ -4,14 +4,14 @@
 
 #include <vector>
 
+#include "common/learning/room.hpp"
 #include "common/model/learned/features.hpp"
-#include "common/model/scene.hpp"
 
 namespace fathom::learning {
 
 /// How far a point is, which is sought too: coarser than those below.
-[[nodiscard]] std::vector<model::Factor> distances_of(const model::Scene& scene);
+[[nodiscard]] std::vector<model::Factor> distances_of(const Room& room);
 /// Middle, and all around within and beyond where it was; slack nowhere, in a part of it, or nearly everywhere.
-[[nodiscard]] std::vector<model::Factor> stretches_of(const model::Scene& scene);
+[[nodiscard]] std::vector<model::Factor> stretches_of(const Room& room);
 
 }  // namespace fathom::learning

@@ -41,7 +41,7 @@ class Terms {
     for (const int axis : axes_) along(axis, seen.fit.hypothesis.model.allocation);
     if (scene.attitude) world();
     if (scene.attitude) levers();
-    if (scene.attitude && scene.position && std::ranges::find(axes_, 0) != axes_.end()) pulls();
+    if (scene.attitude && scene.position && std::ranges::find(axes_, 0) != axes_.end()) pulls(Room{problem});
     together();
     if (std::ranges::any_of(axes_, [](int axis) { return axis < 3; }))
       all.push_back({"mass", model::kMass, {{}}, kMassTerm, true});
@@ -111,8 +111,8 @@ class Terms {
   }
 
   /// Lines that end somewhere.
-  void pulls() {
-    for (const Factor& stretch : stretches_of(scene_))
+  void pulls(const Room& room) {
+    for (const Factor& stretch : stretches_of(room))
       all.push_back({.words = "a pull toward a point", .axis = model::kPull, .columns = {{stretch}}, .searched = true});
   }
 

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "test/common/learning/learned_case.hpp"
 
@@ -35,6 +36,16 @@ NoisyDiveBox where_it_goes() {
   return box;
 }
 
+model::Model base_of(const test::LearnedCase& dive) {
+  return as_model(dive.conclusion.found.best.fit.hypothesis, dive.problem.input_step);
+}
+/// Open-loop error on the rest of the dive with what it is told, over another model's.
+double over(const model::Model& other, const test::LearnedCase& dive, const Learned& learned,
+            const std::shared_ptr<const model::LearnedForce>& told) {
+  const model::Model with = as_model(learned.fit.hypothesis, dive.problem.input_step, told.get());
+  return residual::error_over(other, with, {&dive.rest, 1}, residual::OpenLoop{}).value;
+}
+
 }  // namespace
 
 TEST_CASE("taken out: a stream, a dead band and a loss with speed are learned as what they are") {
@@ -56,12 +67,9 @@ TEST_CASE("taken out: a stream, a dead band and a loss with speed are learned as
     REQUIRE(learned.given.adopted);
     REQUIRE(learned.given.carried);
     CHECK(learned.given.words.find(one.words) != std::string::npos);
-    const double step = dive.problem.input_step;
-    const residual::Ratio over_base = residual::error_over(
-        as_model(dive.conclusion.found.best.fit.hypothesis, step),
-        as_model(learned.fit.hypothesis, step, learned.elsewhere.get()), {&dive.rest, 1}, residual::OpenLoop{});
-    MESSAGE(std::string{one.name} << ": " << over_base.value << " of the base model's error");
-    CHECK(over_base.value < one.of_base);
+    const double over_base = over(base_of(dive), dive, learned, learned.elsewhere);
+    MESSAGE(std::string{one.name} << ": " << over_base << " of the base model's error");
+    CHECK(over_base < one.of_base);
   }
 }
 
@@ -79,14 +87,8 @@ TEST_CASE("taken out: a tether is learned as a pull toward where it is made fast
   REQUIRE(learned.given.adopted);
   REQUIRE(learned.given.carried);
   CHECK(learned.given.words.find("a pull toward a point") != std::string::npos);
-  const double step = dive.problem.input_step;
-  const auto over = [&](const model::Model& other) {
-    return residual::error_over(other, as_model(learned.fit.hypothesis, step, learned.elsewhere.get()), {&dive.rest, 1},
-                                residual::OpenLoop{})
-        .value;
-  };
-  const double over_base = over(as_model(dive.conclusion.found.best.fit.hypothesis, step));
-  const double over_truth = over(dive.dive.truth);
+  const double over_base = over(base_of(dive), dive, learned, learned.elsewhere),
+               over_truth = over(dive.dive.truth, dive, learned, learned.elsewhere);
   MESSAGE("tether: " << over_base << " of the base model's error, " << over_truth << " of the truth's");
   CHECK(over_base < 0.3);
   CHECK(over_truth < 1.3);
@@ -107,12 +109,9 @@ TEST_CASE("taken out: waves are learned as water that swings, and foretold beyon
   CHECK(learned.given.words.find("a swing of the water") != std::string::npos);
   CHECK(learned.given.words.find("a period of 6.76 s, 7") != std::string::npos);  // 2 pi / .93; 2 pi g / .93^2 = 71 m
   REQUIRE(learned.given.goes_on);
-  const double step = dive.problem.input_step;
-  const residual::Ratio over_base = residual::error_over(as_model(dive.conclusion.found.best.fit.hypothesis, step),
-                                                         as_model(learned.fit.hypothesis, step, learned.later.get()),
-                                                         {&dive.rest, 1}, residual::OpenLoop{});
-  MESSAGE("wave: " << over_base.value << " of the base model's error");
-  CHECK(over_base.value < 0.25);  // .15 is the noise
+  const double over_base = over(base_of(dive), dive, learned, learned.later);
+  MESSAGE("wave: " << over_base << " of the base model's error");
+  CHECK(over_base < 0.25);  // .15 is the noise
 }
 
 TEST_CASE("taken out: drag that grows toward a wall is learned as drag near an edge, wherever the wall is") {
@@ -127,11 +126,8 @@ TEST_CASE("taken out: drag that grows toward a wall is learned as drag near an e
   REQUIRE(learned.given.adopted);
   REQUIRE(learned.given.carried);
   CHECK(learned.given.words.find("near the north") != std::string::npos);
-  const double step = dive.problem.input_step;
-  const residual::Ratio over_base = residual::error_over(
-      as_model(dive.conclusion.found.best.fit.hypothesis, step),
-      as_model(learned.fit.hypothesis, step, learned.elsewhere.get()), {&dive.rest, 1}, residual::OpenLoop{});
-  MESSAGE("wall: " << over_base.value << " of the base model's error");
+  const double over_base = over(base_of(dive), dive, learned, learned.elsewhere);
+  MESSAGE("wall: " << over_base << " of the base model's error");
   CHECK(learned.given.held_out_carried < 0.6);
-  CHECK(over_base.value < 0.9);  // the rest of the dive comes seldom so near
+  CHECK(over_base < 0.75);  // the rest of the dive comes seldom so near
 }

@@ -66,6 +66,29 @@ TEST_CASE("correction: what result.json holds is read back as the same force, wi
   CHECK(load.wrench[0] == doctest::Approx(0.5 * 1.5));
 }
 
+TEST_CASE("correction: a pull is read back with its point, zeros and all, and its length; with one missing it is not") {
+  const model::Vehicle vehicle =
+      model::Vehicle::load(std::string(FATHOM_SOURCE_DIR) + "/config/vehicles/bluerov2.yaml");
+  DiagnosisResult result = diagnosed();
+  result.correction->terms = {
+      {"a pull toward a point", model::kPull, {{"stretch", 0, 0, 0.0, 0.0, 3.0, 1.25}}, 2.0, 0.5, 0.01, true}};
+  result.correction->covariance = {{1e-4}};
+  std::string text = report::to_json(result);
+  {
+    const Written file{text};
+    const model::LearnedModel read = model::read_learned(file.path.string(), vehicle);
+    REQUIRE(read.force != nullptr);
+    REQUIRE(read.force->force().features.size() == 1);
+    CHECK(read.force->force().features[0].pulls());
+    CHECK(read.force->force().features[0].factors[0] ==
+          model::Factor{.quantity = model::Quantity::kStretch, .a = 0.0, .b = 0.0, .c = 3.0, .d = 1.25});
+  }
+  const std::size_t at = text.find("\"c\":", text.find("\"stretch\""));
+  REQUIRE(at != std::string::npos);
+  const Written damaged{text.replace(at, 4, "\"z\":")};
+  CHECK_THROWS_WITH_AS((void)model::read_learned(damaged.path.string(), vehicle), doctest::Contains("'c'"), InputError);
+}
+
 TEST_CASE("correction: a file of another vehicle, or no result at all, is refused with its line") {
   const model::Vehicle vehicle =
       model::Vehicle::load(std::string(FATHOM_SOURCE_DIR) + "/config/vehicles/bluerov2.yaml");
