@@ -169,7 +169,7 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
   quiet.noise = found.fit.noise;
   inference::Seen seen = inference::see(problem, quiet, threads);
   inference::take_step(seen);
-  const std::vector<Form> forms = grammar(problem, seen, scene, found);
+  const std::vector<Form> forms = grammar(problem, scene, found);
   if (forms.empty()) return std::nullopt;
   double paid = 0.0;  // by the learned force
   if (found.fit.finite) paid = found.fit.log_evidence - base.log_evidence - found.log_odds;

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "common/inference/thruster_laws.hpp"
-#include "common/learning/edges.hpp"
-
 namespace fathom::learning {
 namespace {
 
@@ -21,7 +18,7 @@ constexpr double kInnerPrice = 2.3;   // nats for a number of unknown order
 constexpr double kMomentPrice = 5.3;  // a moment has many places
 constexpr double kLinePrice = 9.0;    // a frequency more
 constexpr double kMomentLasts = 0.3;  // s
-constexpr int kMoments = 30, kBends = 60, kReaches = 32;
+constexpr int kMoments = 30;
 constexpr double kMomentRoom = 8.0, kMomentStep = 1.0;  // s about a moment that the learned force has found
 
 /// "tau_Y", "f_north".
@@ -152,39 +149,6 @@ class Grammar {
     }
   }
 
-  /// What the learned force holds near an edge, its reach left open.
-  void nearness(const inference::GroupFound& group, const model::FreeForce& force, std::span<const Edge> edges) {
-    for (const model::FeatureGroup& own : force.groups) {
-      if (own.kind != group.kind || own.axis != group.axis) continue;
-      const Feature& first = force.features[static_cast<std::size_t>(own.first)];
-      if (first.count != 1 || first.factors[0].quantity != Quantity::kNear) continue;
-      const auto edge = std::ranges::find_if(edges, [&](const Edge& each) {
-        return each.along.index == first.factors[0].index && each.along.c == first.factors[0].c;
-      });
-      if (edge == edges.end()) continue;
-      std::vector<double> reaches;
-      for (int k = 1; k <= kReaches; ++k) reaches.push_back(0.5 * edge->width * k / kReaches);
-      add(own.axis, own.kind, "c exp(-d / s)", "s", "m", reaches, kInnerPrice,
-          [axis = own.axis, edge = *edge](double s) { return std::vector{along(axis, {near(edge, s)})}; });
-    }
-  }
-
-  /// A curve of thrust with one bend.
-  void bend(const inference::ThrusterLaw& law) {
-    if (law.knots.empty()) return;
-    const double most = law.knots.front().a;  // twice the rms
-    std::vector<double> sizes;
-    for (int i = 1; i <= kBends; ++i) sizes.push_back(most * i / kBends);
-    const auto read = [=](Quantity quantity) {
-      return [=](double d) { return std::vector{along(law.axis, {of(quantity, law.index, d)})}; };
-    };
-    const std::string f = law.axis == model::kEachThruster ? "f_j" : "f_" + std::to_string(law.index + 1);
-    add(law.axis, "a force that is smaller than d", "c " + f + " where |" + f + "| < d", "d", "N", sizes, kInnerPrice,
-        read(Quantity::kThrustBelow));
-    add(law.axis, "the force up to d", "c sign(" + f + ") min(|" + f + "|, d)", "d", "N", sizes, kInnerPrice,
-        read(Quantity::kThrustHeld));
-  }
-
   std::vector<Form> forms;
 
  private:
@@ -214,8 +178,7 @@ class Grammar {
 
 }  // namespace
 
-std::vector<Form> grammar(const Problem& problem, const inference::Seen& seen, const model::Scene& scene,
-                          const inference::FreeForceFound& found) {
+std::vector<Form> grammar(const Problem& problem, const model::Scene& scene, const inference::FreeForceFound& found) {
   Grammar grammar{problem, scene};
   std::vector<bool> asked(6, false);
   for (const inference::GroupFound& group : found.groups) {
@@ -227,15 +190,7 @@ std::vector<Form> grammar(const Problem& problem, const inference::Seen& seen, c
     if (asked[static_cast<std::size_t>(axis)]) grammar.body(axis);
     if (scene.attitude && axis < 3) grammar.world(kWorldAxis + axis);
   }
-  for (const inference::ThrusterLaw& law : inference::thruster_laws(problem, seen, scene)) {
-    if (std::ranges::find(found.groups, law.axis, &inference::GroupFound::axis) != found.groups.end())
-      grammar.bend(law);
-  }
-  const std::vector<Edge> edges = edges_of(scene);
-  for (const inference::GroupFound& group : found.groups) {
-    grammar.again(group, found.fit.hypothesis.force);
-    grammar.nearness(group, found.fit.hypothesis.force, edges);
-  }
+  for (const inference::GroupFound& group : found.groups) grammar.again(group, found.fit.hypothesis.force);
   return std::move(grammar.forms);
 }
 

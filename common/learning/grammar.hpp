@@ -22,8 +22,8 @@ struct Form {
 };
 
 /// Forms along the axes of the learned force's groups, and along the world's.
-[[nodiscard]] std::vector<Form> grammar(const likelihood::Problem& problem, const inference::Seen& seen,
-                                        const model::Scene& scene, const inference::FreeForceFound& found);
+[[nodiscard]] std::vector<Form> grammar(const likelihood::Problem& problem, const model::Scene& scene,
+                                        const inference::FreeForceFound& found);
 
 /// Sum of amplitudes times products; `moment`: what stands in place of a moment that is sought.
 [[nodiscard]] std::string equation_of(const std::vector<model::Feature>& features, const std::string& moment = {});

@@ -112,6 +112,8 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
     for (const std::vector<Factor>& bump : bumps) sought(", about a place", bump, kWorldTerm);
     for (const Factor& distance : distances_of(Room{problem}))
       sought(", by the distance to a point", {distance}, kWorldTerm | kGoingTerm);
+    for (const Factor& distance : plan_distances_of(Room{problem}))
+      sought(", by the distance in the plan", {distance}, kWorldTerm | kGoingTerm);
   }
   if (scene.attitude) {
     for (const Edge& edge : edges_of(scene)) {

@@ -53,4 +53,10 @@ std::vector<model::Factor> distances_of(const Room& room) {
   return std::move(points.all);
 }
 
+std::vector<model::Factor> plan_distances_of(const Room& room) {
+  std::vector<model::Factor> all = distances_of(room);
+  for (model::Factor& one : all) one = {.quantity = model::Quantity::kPlanStretch, .a = one.a, .b = one.b, .d = one.d};
+  return all;
+}
+
 }  // namespace fathom::learning

@@ -15,6 +15,9 @@ namespace {
 using likelihood::Factor;
 using likelihood::Quantity;
 
+// Sizes, of twice the rms, where a bend of a thrust curve begins to be sought: a step is seen from close by only.
+constexpr int kBends = 15;
+constexpr double kSmallestBend = 0.03, kBendRatio = 1.33;
 constexpr const char* kWorldNames[3] = {"north", "east", "down"};
 
 Factor v(int axis) { return {.quantity = Quantity::kVelocity, .index = axis}; }
@@ -131,6 +134,11 @@ class Terms {
   void together() {
     all.push_back({"the hull's drag", model::kHullDrag, {{}}, kDragTerm, true});
     all.push_back({"the hull's drag against translation", model::kGoingDrag, {{}}, kDragTerm | kGoingTerm, true});
+    if (std::ranges::any_of(axes_, [](int axis) { return axis < 3; })) {
+      const Columns speed{{{.quantity = Quantity::kFlowSpeed}}};  // the base's own terms hold it without
+      all.push_back({"drag against the way", model::kAgainstWay, {{}}, kDragTerm | kGoingTerm, true});
+      all.push_back({"drag against the way, of the speed", model::kAgainstWay, speed, kDragTerm | kGoingTerm});
+    }
     all.push_back({"the whole thrust", model::kAllThrust, {{}}, kThrustTerm | kWholeTerm, true});
     Columns slow;
     for (int bank = 0; bank < static_cast<int>(likelihood::kThrustMemories.size()); ++bank)
@@ -159,6 +167,18 @@ class Terms {
     Columns curve;
     for (const Factor& knot : of.knots) curve.push_back({knot});
     all.push_back({.words = "a thrust curve of " + of.words, .axis = of.axis, .columns = curve, .closed = false});
+    for (const Quantity quantity : {Quantity::kThrustHeld, Quantity::kThrustBelow}) {
+      for (int k = 0; k < kBends; ++k) {
+        Factor bend = own(quantity);
+        bend.a = kSmallestBend * std::pow(kBendRatio, k) * of.knots.front().a;
+        all.push_back({.words = std::string{quantity == Quantity::kThrustHeld ? "the force up to a size of "
+                                                                              : "the force below a size of "} +
+                                of.words,
+                       .axis = of.axis,
+                       .columns = {{bend}},
+                       .searched = true});
+      }
+    }
     const auto law = [&](const char* words, Columns columns) {
       all.push_back({of.words + ", by " + words, of.axis, std::move(columns)});
     };

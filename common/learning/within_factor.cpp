@@ -12,9 +12,16 @@ using model::Quantity;
 constexpr double kPlaceStep = 0.25;                        // of the room: of a point or a length
 constexpr double kReachStep = 0.25, kReachSigma = 1.0;     // of the reach of an edge
 constexpr double kBearingStep = 0.2, kBearingSigma = 0.6;  // rad
+constexpr double kSizeStep = 0.25, kSizeSigma = 1.0;       // of the size of a force
 constexpr double kShortest = 1.0 / 60, kLongest = 0.5;     // of the width of where it was: reaches of edges
 constexpr double kLeastWidth = 0.1;                        // m
+constexpr double kLeastSize = 1e-3;                        // N
 constexpr double kDifference = 0.08;                       // of a step
+
+/// A thrust curve, at a size.
+bool bends(const Factor& factor) {
+  return factor.quantity == Quantity::kThrustHeld || factor.quantity == Quantity::kThrustBelow;
+}
 
 Eigen::Vector3d outward(const Factor& near) {
   if (near.index == 1) return Eigen::Vector3d::UnitZ();
@@ -25,17 +32,21 @@ Eigen::Vector3d outward(const Factor& near) {
 }  // namespace
 
 bool has_inner(const Factor& factor) {
-  return factor.quantity == Quantity::kStretch || factor.quantity == Quantity::kNear ||
-         factor.quantity == Quantity::kPlanBump;
+  return factor.quantity == Quantity::kStretch || factor.quantity == Quantity::kPlanStretch ||
+         factor.quantity == Quantity::kNear || factor.quantity == Quantity::kPlanBump || bends(factor);
 }
 
 std::vector<WithinFactor> inner_of(const Factor& factor, const Room& room) {
   std::vector<WithinFactor> all;
   if (factor.quantity == Quantity::kStretch) {
     for (const std::size_t which : {0, 1, 2, 3}) all.push_back({which, kPlaceStep * room.reach(), room.reach()});
+  } else if (factor.quantity == Quantity::kPlanStretch) {
+    for (const std::size_t which : {0, 1, 3}) all.push_back({which, kPlaceStep * room.reach(), room.reach()});
   } else if (factor.quantity == Quantity::kNear) {
     all.push_back({1, kReachStep * factor.b, kReachSigma * factor.b});
     if (factor.index == 0) all.push_back({2, kBearingStep, kBearingSigma});
+  } else if (bends(factor)) {
+    all.push_back({0, kSizeStep * factor.a, kSizeSigma * factor.a});
   } else if (factor.quantity == Quantity::kPlanBump) {
     for (const std::size_t which : {0, 1}) all.push_back({which, kPlaceStep * factor.c, factor.c});
     all.push_back({2, kReachStep * factor.c, kReachSigma * factor.c});
@@ -48,11 +59,13 @@ double& number_of(Factor& factor, std::size_t which) {
 }
 
 void settle(Factor& factor, const Room& room) {
-  if (factor.quantity == Quantity::kStretch) factor.d = std::max(factor.d, 0.0);
+  if (factor.quantity == Quantity::kStretch || factor.quantity == Quantity::kPlanStretch)
+    factor.d = std::max(factor.d, 0.0);
   if (factor.quantity == Quantity::kPlanBump) {
     const double width = 2.0 * std::max({room.half[1], room.half[2], 0.5 * kLeastWidth});
     factor.c = std::clamp(factor.c, kShortest * width, width);
   }
+  if (bends(factor)) factor.a = std::max(factor.a, kLeastSize);
   if (factor.quantity != Quantity::kNear) return;
   const Room::Along along = room.along(outward(factor));
   factor.a = along.edge;

@@ -1,5 +1,6 @@
 // Numbers inside a factor that no weight can stand for, sought by what the force does when they change: the point and
-// the length of a line that pulls, the bearing and the reach of an edge, a place in the plan and how wide it is.
+// the length of a line that pulls, the bearing and the reach of an edge, a place in the plan and how wide it is, the
+// size at which a thrust curve bends.
 #pragma once
 
 #include <vector>

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/model/learned/factors/factor_kind.hpp"
+#include "common/model/learned/told.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::learning {
@@ -30,8 +31,8 @@ constexpr Hint kHints[]{
     {"drag", "growing with time", "weed or fouling, or more and more line in the water"},
     {"drag", "from a moment on", "something that was caught or lost at that moment"},
     {"drag", "depth", "the surface, the bottom or a layer of other water"},
-    {"drag", "distance to a point", "line in the water that comes from there"},
-    {"force toward down", "distance to a point", "a line that comes from there and is heavier, or lighter, than water"},
+    {"drag", "distance", "line in the water that comes from there"},
+    {"force toward down", "distance", "a line that comes from there and is heavier, or lighter, than water"},
     {"drag", "place", "walls, or line in the water whose length goes with the place"},
     {"thrust curve", "", "propellers, drivers or a limit of power whose curve is not that of the vehicle file"},
     {"thruster", "advance", "propellers that lose thrust as the craft moves"},
@@ -87,19 +88,8 @@ std::string swing_words(const CorrectionGiven& given) {
 std::string place_words(const CorrectionGiven& given) {
   std::string words;
   for (const CorrectionTerm& term : given.terms) {
-    for (const CorrectionFactor& f : term.factors) {
-      if (!term.law) continue;
-      std::string one;
-      if (f.quantity == model::word(model::Quantity::kStretch))
-        one = text(" The point lies at N %.3g m, E %.3g m, D %.3g m", f.a, f.b, f.c) +
-              (f.d > 0.0 ? text(", %.3g m from where it begins to act.", f.d) : std::string{"."});
-      if (f.quantity == model::word(model::Quantity::kNear) && f.index == 0)
-        one = text(" The edge lies toward %.0f deg; %.3g m away from it a third is left.",
-                   std::fmod(f.c * 180.0 / std::numbers::pi + 720.0, 360.0), f.b);
-      if (f.quantity == model::word(model::Quantity::kPlanBump))
-        one = text(" The place is at N %.3g m, E %.3g m, %.3g m wide.", f.a, f.b, f.c);
-      if (words.find(one) == std::string::npos) words += one;
-    }
+    const std::string where = model::where(term);
+    if (!where.empty() && words.find(where) == std::string::npos) words += " It has its " + where + ".";
   }
   return words;
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/model/learned/factors/factor_kind.hpp"
+#include "common/model/learned/told.hpp"
 #include "common/report/correction_figures.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/text.hpp"
@@ -99,6 +100,8 @@ std::string correction_line(const CorrectionGiven& given) {
   constexpr std::size_t kShort = 60;  // characters: what is longer is read in the section
   const bool told = given.formula && given.formula->equation.size() <= kShort;
   std::string with = told ? given.formula->equation : kinds.empty() ? "" : kinds.front();
+  const std::string where = given.terms.empty() ? "" : model::where(given.terms.front());
+  if (!where.empty()) with += ", " + where;
   if (!told && kinds.size() > 1) with += " and " + std::to_string(kinds.size() - 1) + " more";
   return "<b>A correction, not a cause: a learned force, " + percent(given.size) + " of the applied force</b>" +
          (with.empty() ? "" : " (" + escape(with) + ")") + "; where its weights were not fitted, the error is " +

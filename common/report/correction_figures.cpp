@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/model/learned/factors/factor_kind.hpp"
+#include "common/model/learned/told.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -104,6 +105,7 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
     }
     case Quantity::kNorth:
     case Quantity::kStretch:
+    case Quantity::kPlanStretch:
     case Quantity::kPlanBump:
       return Argument{.name = "x",
                       .unit = "m",
@@ -162,22 +164,6 @@ std::string data(const std::string& name, const std::vector<std::vector<double>>
   return text + "EOD\n";
 }
 
-}  // namespace
-
-std::optional<Feature> feature_of(const CorrectionTerm& term) {
-  Feature feature{.axis = term.axis, .count = static_cast<int>(term.factors.size()), .scale = term.scale};
-  if (term.factors.size() > feature.factors.size()) return std::nullopt;
-  for (std::size_t i = 0; i < term.factors.size(); ++i) {
-    const CorrectionFactor& f = term.factors[i];
-    const auto quantity = model::quantity_from(f.quantity);
-    if (!quantity) return std::nullopt;
-    feature.factors[i] = {*quantity, f.index, f.bank, f.a, f.b, f.c, f.d, f.column};
-  }
-  return feature;
-}
-
-namespace {
-
 /// With measured columns one spread above their means.
 Feature beside_columns(Feature feature) {
   const auto end = feature.factors.begin() + feature.count;
@@ -200,7 +186,7 @@ std::vector<CorrectionCurve> correction_curves(const CorrectionGiven& given) {
     for (; last < given.terms.size() && given.terms[last].group == given.terms[first].group &&
            given.terms[last].axis == given.terms[first].axis;
          ++last) {
-      if (const auto feature = feature_of(given.terms[last])) features.push_back(beside_columns(*feature));
+      if (const auto feature = model::feature_of(given.terms[last])) features.push_back(beside_columns(*feature));
     }
     std::set<Argument> arguments;
     for (const Feature& feature : features) {

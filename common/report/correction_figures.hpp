@@ -22,6 +22,4 @@ struct CorrectionCurve {
 /// `truth`, where it is known: of the same x.
 [[nodiscard]] Figure draw_correction(const CorrectionCurve& curve, const std::vector<double>& truth = {});
 
-[[nodiscard]] std::optional<model::Feature> feature_of(const CorrectionTerm& term);
-
 }  // namespace fathom::report

@@ -24,7 +24,7 @@ struct CorrectionFactor {
 struct CorrectionTerm {
   std::string group;  ///< in words
   int axis{};         ///< 0..5 X..N of the body; 6..8 north, east, down of the world; 9 all of the hull's drag; 10 all
-                      ///< of the thrust; 11.. the line of each thruster
+                      ///< of the thrust; 11.. the line of each thruster; the rest as features.hpp counts them
   std::vector<CorrectionFactor> factors;
   double scale{}, weight{}, sigma{};
   bool law{};  ///< part of a law in closed form, none of a table

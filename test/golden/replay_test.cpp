@@ -152,9 +152,10 @@ TEST_SUITE_BEGIN("search golden");
 TEST_CASE("golden replay: the diagnosis of a short Beluga pair") {
   const Scratch scratch;
   const std::string fitted = cut(scratch, "random-1", 150), judge = cut(scratch, "random-2", 60);
+  // Without what is learned of so short a run, which has rivals within a tenth of a nat: rounding would choose.
   Replay::run("fathom", " diagnose --vehicle " + file("config/vehicles/beluga.yaml") + " --map " +
                             file("config/maps/beluga.yaml") + " --train " + fitted + " --validate " + judge +
-                            " --threads 2 --out " + scratch.path("out"));
+                            " --no-learning --threads 2 --out " + scratch.path("out"));
   std::ifstream text{scratch.path("out/result.json")};
   const auto result = nlohmann::json::parse(text);
   Table table{.columns = {"quantity", "value"}, .rows = {}};

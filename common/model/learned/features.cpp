@@ -66,6 +66,7 @@ std::string direction_words(int axis) {
   if (axis == kMass) return "the mass";
   if (axis == kPull) return "the way to a point";
   if (axis == kGoingDrag) return "the hull's drag against translation";
+  if (axis == kAgainstWay) return "the way past the water";
   if (axis >= kLever) return std::string("the lever of weight and buoyancy in ") + "xyz"[axis - kLever];
   if (axis >= kStream) return "the water's " + direction_words(axis - kStream + kWorldAxis);
   return "thruster " + std::to_string(axis - kThrusterLine + 1);
@@ -81,6 +82,7 @@ std::string direction_symbol(int axis) {
   if (axis == kMass) return "m =";
   if (axis == kPull) return "f toward p_A =";
   if (axis == kGoingDrag) return "tau_1 = -(D(nu) nu)_1";
+  if (axis == kAgainstWay) return "f = -v";
   if (axis >= kLever) return std::string("G_") + "xyz"[axis - kLever] + " =";
   if (axis >= kStream) return "v_" + direction_words(axis - kStream + kWorldAxis) + " =";
   return "tau = b_" + std::to_string(axis - kThrusterLine + 1);
@@ -148,6 +150,7 @@ double Feature::rate(const FeatureState& state) const {
 
 double Feature::size(const FeatureState& state) const {
   if (weighs()) return std::abs(value(state)) * state.by_mass.head<3>().norm();
+  if (against_way()) return std::abs(value(state)) * state.nu.head<3>().norm();
   if (levers())
     return std::abs(value(state)) * Eigen::Vector3d::Unit(axis - kLever).cross(state.R_WB.row(2).transpose()).norm();
   if (streams()) {
@@ -162,7 +165,7 @@ double Feature::size(const FeatureState& state) const {
 }
 
 bool Feature::moves_with_velocity() const {
-  return of_drag() || any(*this, [](const FactorKind& kind) { return kind.moves; });
+  return of_drag() || against_way() || any(*this, [](const FactorKind& kind) { return kind.moves; });
 }
 
 bool Feature::depends_on_time() const {
@@ -198,6 +201,8 @@ void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) co
     wrench += size * state.drag;
   } else if (axis == kGoingDrag) {
     wrench.head<3>() += size * state.drag.head<3>();
+  } else if (against_way()) {
+    wrench.head<3>() -= size * state.nu.head<3>();
   } else if (axis == kAllThrust) {
     wrench += size * state.tau;
   } else if (weighs()) {

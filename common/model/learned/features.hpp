@@ -84,8 +84,8 @@ struct Factor {
 /// too, which hull and effects feel as they feel any stream, and with the acceleration of water that swings: no force
 /// that adds to others.
 /// The levers G_x, G_y, G_z of weight and buoyancy, whose moment is G x down. A mass at Bo: inertia, no weight. A pull
-/// on Bo toward the point of the world that its factor of kStretch names. Last the hull's drag against translation
-/// alone.
+/// on Bo toward the point of the world that its factor of kStretch names. The hull's drag against translation alone.
+/// Last against the way past the water, each N s/m times the velocity: a drag that is the same on all sides.
 constexpr int kWorldAxis = 6, kHullDrag = 9, kAllThrust = 10, kThrusterLine = 11;
 constexpr int kEachThruster = kThrusterLine + kMaxActuators, kEachAxis = kEachThruster + 1;
 constexpr int kStream = kEachAxis + 1;
@@ -93,7 +93,8 @@ constexpr int kLever = kStream + 3;
 constexpr int kMass = kLever + 3;
 constexpr int kPull = kMass + 1;
 constexpr int kGoingDrag = kPull + 1;
-constexpr int kDirections = kGoingDrag + 1;
+constexpr int kAgainstWay = kGoingDrag + 1;
+constexpr int kDirections = kAgainstWay + 1;
 /// In words of a law of all thrusters or axes, in place of an index.
 constexpr int kOwn = -1;
 [[nodiscard]] std::string direction_words(int axis);  ///< "X", "north", "the hull's drag", "thruster 2"
@@ -105,8 +106,8 @@ struct Feature {
   int count{};  ///< of factors
   std::array<Factor, 4> factors{};
   double scale{1.0};
-  /// Scaled value: N, N m, m/s of a stream, kg of a mass, or a share of the drag or thrust that it acts along. Of a law
-  /// of all thrusters or axes that of the one which its factors name.
+  /// Scaled value: N, N m, N s/m against the way, m/s of a stream, kg of a mass, or a share of the drag or thrust that
+  /// it acts along. Of a law of all thrusters or axes that of the one which its factors name.
   [[nodiscard]] double value(const FeatureState& state) const;
   [[nodiscard]] double rate(const FeatureState& state) const;  ///< of a swing's value, with the clock alone, per second
   /// How much it pushes, without sign: of a law of all thrusters or axes the root of their sum of squares, of a stream
@@ -120,6 +121,7 @@ struct Feature {
   [[nodiscard]] bool levers() const { return axis >= kLever && axis < kMass; }
   [[nodiscard]] bool weighs() const { return axis == kMass; }
   [[nodiscard]] bool pulls() const { return axis == kPull; }
+  [[nodiscard]] bool against_way() const { return axis == kAgainstWay; }
   [[nodiscard]] bool of_drag() const { return axis == kHullDrag || axis == kGoingDrag; }  ///< a share of it
   [[nodiscard]] bool moves_with_velocity() const;
   [[nodiscard]] bool depends_on_time() const;

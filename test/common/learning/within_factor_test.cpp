@@ -40,6 +40,11 @@ TEST_CASE("within factor: an edge that turns is where the box ends, and no reach
   Factor line{.quantity = Quantity::kStretch, .d = -2.0};
   settle(line, room);
   CHECK(line.d == 0.0);
+  CHECK(inner_of(line, room).size() == 4);
+  Factor hanging{.quantity = Quantity::kPlanStretch, .d = -2.0};
+  settle(hanging, room);
+  CHECK(hanging.d == 0.0);
+  CHECK(inner_of(hanging, room).size() == 3);  // it has no depth
   CHECK_FALSE(has_inner({.quantity = Quantity::kDepth}));
 }
 

@@ -335,6 +335,43 @@ TEST_CASE("learned force: a pull toward a point is that of a tether, slack up to
   CHECK(taut == 2);
 }
 
+TEST_CASE("learned force: against the way, by length and speed, is the drag of a tether") {
+  Bench bench;
+  bench.visited.p_low.setConstant(-4.0);
+  bench.visited.p_high.setConstant(4.0);
+  bench.visited.nu.setConstant(1.0);
+  const Factor length{.quantity = Quantity::kStretch, .a = 3.0, .b = -2.0, .c = 0.5};
+  const LearnedForce learned =
+      bench.made(one(along(kAgainstWay, {{.quantity = Quantity::kFlowSpeed}, length}, 2.0), 1.5));
+  const std::vector<double> theta{3.0, 3.0, -2.0, 0.5, 0.0, 0.0, 0.0};
+  const Motion motion{
+      .p_WB = {-1.0, 1.0, 2.0}, .nu = {0.4, -0.3, 0.2, 0.1, 0.2, -0.3}, .force = ActuatorForces::Zero(6)};
+  Load load, told;
+  load.clear(), told.clear();
+  learned.load(motion, {}, 0, load);
+  find_effect("tether_drag")->load(motion, theta, 0, told);
+  CHECK(told.wrench.norm() > 0.1);
+  CHECK(load.wrench.isApprox(told.wrench, 1e-12));
+}
+
+TEST_CASE("learned force: what goes with the distance in the plan does not go with depth, and fades beyond the box") {
+  Bench bench;
+  bench.visited.p_low.setConstant(-2.0);
+  bench.visited.p_high.setConstant(2.0);
+  const Factor away{.quantity = Quantity::kPlanStretch, .a = 1.0, .b = -1.0, .d = 0.5};
+  const LearnedForce learned = bench.made(one(along(kWorldAxis + 2, {away}, 1.0), 3.0));  // N/m
+  const auto down_at = [&](const Eigen::Vector3d& p_WB) {
+    Load load;
+    load.clear();
+    learned.load({.p_WB = p_WB, .force = ActuatorForces::Zero(6)}, {}, 0, load);
+    return load.wrench[2];
+  };
+  CHECK(down_at({1.3, -1.0, 1.0}) == 0.0);  // within the length
+  for (const double depth : {-1.0, 0.5, 2.0})
+    CHECK(down_at({-1.0, 0.0, depth}) == doctest::Approx(3.0 * (std::hypot(2.0, 1.0) - 0.5)));
+  CHECK(std::abs(down_at({60.0, 0.0, 0.0})) < 1e-3);
+}
+
 TEST_CASE("factors: every kind has a name of its own, words and a value") {
   FeatureState state{.t = 2.0,
                      .p_WB = {0.1, 0.2, 0.3},

@@ -131,4 +131,11 @@ TEST_CASE("correction: the first screen has a line of it; the whole sentence fol
   CHECK(report::correction_line(given).find("tau_Z = c w w") != std::string::npos);
   given.formula->equation = std::string(200, 'x');
   CHECK(report::correction_line(given).find("velocity and 3 more") != std::string::npos);
+  // What has a place is looked for there.
+  given.terms.insert(
+      given.terms.begin(),
+      {"a pull toward a point", model::kPull, {{"stretch", 0, 0, 1.5, -2.0, 3.0, 1.25}}, 2.0, 0.5, 0.01, true});
+  CHECK(
+      report::correction_line(given).find("a pull toward a point, point at N 1.5 m, E -2 m, D 3 m, acting from 1.25 m "
+                                          "away and 4 more") != std::string::npos);
 }

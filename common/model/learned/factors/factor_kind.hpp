@@ -20,15 +20,16 @@ struct FactorKind {
   std::string_view sentence;  ///< what it reads
   std::string_view unit;
   Indexed indexed{Indexed::kNothing};
-  int banks{};          ///< low passes that it may read
-  bool moves{false};    ///< it goes with the velocity
-  bool in_time{false};  ///< it goes with the clock: another run is another time
+  int banks{};           ///< low passes that it may read
+  bool moves{false};     ///< it goes with the velocity
+  bool in_time{false};   ///< it goes with the clock: another run is another time
   bool of_point{false};  ///< a, b and c are a point in W, m, and no widths
   double (*value)(const Factor&, const FeatureState&){};
   /// Its rate with the clock alone, 1/s: what swings has one, so that water that swings has an acceleration. A moment
   /// or a ramp has none: how fast a stream sets in is not known.
   double (*rate)(const Factor&, const FeatureState&){};
   std::string (*words)(const Factor&){};  ///< Fossen's notation
+  std::string (*where)(const Factor&){};  ///< of a law: "point at N 1 m, E 2 m"; none: it is at no place
   /// 1 where its recording has been, falling beyond; none: it is bounded by itself.
   double (*within)(const Factor&, const FeatureState&, const Visited&){};
 };

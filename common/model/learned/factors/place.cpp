@@ -30,6 +30,22 @@ std::string bearing_words(double bearing) {
   const double turn = std::fmod(bearing * 180.0 / std::numbers::pi + 720.0, 360.0);
   return std::to_string(static_cast<int>(std::lround(turn)) % 360);
 }
+std::string beyond(const std::string& away, double length) {
+  return length > 0.0 ? "max(" + away + " - " + brief_number(length) + " m, 0)" : away;
+}
+/// Like a law of the first `axes`: as far again as it has been.
+double as_far_again(int axes, const FeatureState& s, const Visited& visited) {
+  double left = 1.0;
+  for (int i = 0; i < axes; ++i) {
+    const double half = 0.5 * (visited.p_high[i] - visited.p_low[i]);
+    left *= fade_outside(s.p_WB[i], visited.p_low[i] - half, visited.p_high[i] + half);
+  }
+  return left;
+}
+std::string in_plan(const Factor& f) { return "N " + brief_number(f.a) + " m, E " + brief_number(f.b) + " m"; }
+std::string from_away(double length) {
+  return length > 0.0 ? ", acting from " + brief_number(length) + " m away" : std::string{};
+}
 std::string turns(const Factor& f) { return f.index == 1 ? "psi" : std::to_string(f.index) + " psi"; }
 
 }  // namespace
@@ -68,7 +84,8 @@ constinit const FactorKind factor_plan_bump{
         [](const Factor& f, const FeatureState& s) {
           return std::exp(-0.5 * (square(s.p_WB.x() - f.a) + square(s.p_WB.y() - f.b)) / square(f.c));
         },
-    .words = [](const Factor& f) { return "near (" + brief_number(f.a) + ", " + brief_number(f.b) + ") m"; }};
+    .words = [](const Factor& f) { return "near (" + brief_number(f.a) + ", " + brief_number(f.b) + ") m"; },
+    .where = [](const Factor& f) { return "place at " + in_plan(f) + ", " + brief_number(f.c) + " m wide"; }};
 
 constinit const FactorKind factor_near{
     .word = "near",
@@ -80,6 +97,13 @@ constinit const FactorKind factor_near{
         [](const Factor& f) {
           const std::string to = f.index == 0 ? "(" + bearing_words(f.c) + " deg)" : std::string{};
           return "exp(-d" + to + " / " + brief_number(f.b) + " m)";
+        },
+    .where =
+        [](const Factor& f) {
+          const std::string toward = f.index == 1   ? "below"
+                                     : f.index == 2 ? "above"
+                                                    : "toward " + bearing_words(f.c) + " deg";
+          return "edge " + toward + ", where " + brief_number(f.b) + " m away from it a third is left";
         },
     .within =
         [](const Factor& f, const FeatureState& s, const Visited&) {
@@ -98,18 +122,26 @@ constinit const FactorKind factor_stretch{
     .words =
         [](const Factor& f) {
           const std::string point = "(" + brief_number(f.a) + ", " + brief_number(f.b) + ", " + brief_number(f.c) + ")";
-          const std::string away = "|" + point + " - p|";
-          return f.d > 0.0 ? "max(" + away + " - " + brief_number(f.d) + " m, 0)" : away;
+          return beyond("|" + point + " - p|", f.d);
         },
-    .within =
-        [](const Factor&, const FeatureState& s, const Visited& visited) {
-          double left = 1.0;  // like a law: as far again as it has been
-          for (const int i : {0, 1, 2}) {
-            const double half = 0.5 * (visited.p_high[i] - visited.p_low[i]);
-            left *= fade_outside(s.p_WB[i], visited.p_low[i] - half, visited.p_high[i] + half);
-          }
-          return left;
-        }};
+    .where =
+        [](const Factor& f) { return "point at " + in_plan(f) + ", D " + brief_number(f.c) + " m" + from_away(f.d); },
+    .within = [](const Factor&, const FeatureState& s, const Visited& visited) { return as_far_again(3, s, visited); }};
+
+constinit const FactorKind factor_plan_stretch{
+    .word = "plan_stretch",
+    .sentence =
+        "how much farther than a length d the point (a, b) of the plan is: of a line that hangs down to the craft",
+    .unit = "m",
+    .of_point = true,
+    .value = [](const Factor& f,
+                const FeatureState& s) { return std::max(std::hypot(s.p_WB.x() - f.a, s.p_WB.y() - f.b) - f.d, 0.0); },
+    .words =
+        [](const Factor& f) {
+          return beyond("|(" + brief_number(f.a) + ", " + brief_number(f.b) + ") - (x, y)|", f.d);
+        },
+    .where = [](const Factor& f) { return "point at " + in_plan(f) + from_away(f.d); },
+    .within = [](const Factor&, const FeatureState& s, const Visited& visited) { return as_far_again(2, s, visited); }};
 
 constinit const FactorKind factor_heading_cosine{
     .word = "heading_cosine",
