@@ -48,9 +48,8 @@ double over(const model::Model& other, const test::LearnedCase& dive, const Lear
 
 }  // namespace
 
-TEST_CASE("taken out: a stream, a dead band and a loss with speed are learned as what they are") {
+TEST_CASE("taken out: a stream and a loss with speed are learned as what they are") {
   for (const TakenOut& one : {TakenOut{"current", 0, {{0, 0.15}, {1, -0.1}}, "a stream toward north", 0.3},
-                              TakenOut{"thruster_deadband", 0, {{0, 1.0}}, "a thrust curve of all thrusters", 0.5},
                               TakenOut{"thrust_loss", 0, {{0, 0.6}}, "all thrusters, by the speed of advance", 0.5}}) {
     CAPTURE(std::string{one.name});
     std::vector<double> theta(model::find_effect(one.name)->parameters().size(), 0.0);
@@ -71,6 +70,50 @@ TEST_CASE("taken out: a stream, a dead band and a loss with speed are learned as
     MESSAGE(std::string{one.name} << ": " << over_base << " of the base model's error");
     CHECK(over_base < one.of_base);
   }
+}
+
+TEST_CASE("taken out: a dead band, with a step or without, is learned as a thrust curve that bends at its size") {
+  constexpr double kSize = 1.0;  // N
+  for (const auto& [variant, quantity] :
+       {std::pair{0, model::Quantity::kThrustHeld}, {1, model::Quantity::kThrustBelow}}) {
+    CAPTURE(variant);
+    const model::Effect* effect = model::find_effect("thruster_deadband");
+    std::vector<double> theta(effect->parameters().size(), 0.0);
+    theta[0] = kSize;
+    const test::LearnedCase dive{{.duration = 160.0,
+                                  .seed = 11,
+                                  .force = 0.01,
+                                  .effects = {{.effect = effect, .variant = variant, .theta = theta}}},
+                                 true,
+                                 0.5};
+    const Learned learned = dive.learned();
+    test::show("dead band", learned.given);
+    REQUIRE(learned.given.adopted);
+    REQUIRE(learned.given.carried);
+    const auto& factor = learned.given.terms.front().factors.front();
+    CHECK(factor.quantity == model::word(quantity));
+    CHECK(factor.a == doctest::Approx(kSize).epsilon(0.1));
+    CHECK(over(dive.dive.truth, dive, learned, learned.elsewhere) < 1.3);
+  }
+}
+
+TEST_CASE("taken out: a tether's drag is learned as one against the way, that goes with the distance to a point") {
+  const NoisyDiveBox where = where_it_goes();
+  test::NoisyDive settings = where.settings;
+  // 30 N per m of line and (m/s)^2 at the middle of a tank is three times what the hull drags.
+  settings.effects = {{.effect = model::find_effect("tether_drag"),
+                       .variant = 0,
+                       .theta = {30.0, where.north + 0.2 * where.width, 0.0, 0.0, 0.0, 0.0, 0.0}}};
+  const test::LearnedCase dive{settings, true, 0.5};
+  const Learned learned = dive.learned();
+  test::show("tether's drag", learned.given);
+  REQUIRE(learned.given.adopted);
+  REQUIRE(learned.given.carried);
+  CHECK(learned.given.words.find("drag against the way, of the speed, by the distance to a point") !=
+        std::string::npos);
+  const double over_truth = over(dive.dive.truth, dive, learned, learned.elsewhere);
+  MESSAGE("tether's drag: " << over_truth << " of the truth's");
+  CHECK(over_truth < 1.3);
 }
 
 TEST_CASE("taken out: a tether is learned as a pull toward where it is made fast, slack up to its length") {
