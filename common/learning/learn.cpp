@@ -241,6 +241,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     given.left.push_back({model::kAxisNames[static_cast<std::size_t>(random.axis)],
                           random.share * with.noise[i][likelihood::kForce] / random.sigma, random.share});
   }
+  given.look_for = look_for(*free);
   given.words = correction_sentence(*free, given);
   return learned;
 }

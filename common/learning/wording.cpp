@@ -57,15 +57,6 @@ constexpr Hint kHints[]{
     {"thrust a moment ago", "", "thrust that is slow to follow, by speed or by direction"},
     {"velocity", "", "lift, drag across the axis, or a part of the hull that no symmetry plane holds"}};
 
-std::string hint_for(const inference::GroupFound& group) {
-  const std::string kind = inference::words(group);
-  for (const Hint& hint : kHints) {
-    if (kind.find(hint.term) != std::string::npos && kind.find(hint.modulator) != std::string::npos)
-      return hint.look_for;
-  }
-  return "";
-}
-
 /// Period, length and way of the first swing.
 std::string swing_words(const CorrectionGiven& given) {
   for (const CorrectionTerm& term : given.terms) {
@@ -105,6 +96,16 @@ bool holds_moment(const CorrectionGiven& given) {
 
 }  // namespace
 
+std::string look_for(const inference::FreeForceFound& found) {
+  if (found.groups.empty()) return "";
+  const std::string kind = inference::words(found.groups.front());
+  for (const Hint& hint : kHints) {
+    if (kind.find(hint.term) != std::string::npos && kind.find(hint.modulator) != std::string::npos)
+      return hint.look_for;
+  }
+  return "";
+}
+
 std::string too_little(const std::string& what, double value, const std::string& how, double needed) {
   return what + text(" %.3g, ", value) + how + text(" %.3g needed", needed);
 }
@@ -119,8 +120,7 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
                          with + "." + swing_words(given) + place_words(given) +
                          (given.formula ? " " + given.formula->words : "") +
                          " It is a correction with arguments, not a cause.";
-  if (const std::string look_for = found.groups.empty() ? "" : hint_for(found.groups.front()); !look_for.empty())
-    sentence += " Look for " + look_for + ".";
+  if (!given.look_for.empty()) sentence += " Look for " + given.look_for + ".";
   const double fall = 100.0 * (1.0 - given.held_out);
   sentence += text(" Where its weights were not fitted, the open-loop error is %.0f %% lower (%d predictions).", fall,
                    given.windows);

@@ -9,6 +9,8 @@
 namespace fathom::learning {
 
 [[nodiscard]] std::string correction_sentence(const inference::FreeForceFound& found, const CorrectionGiven& given);
+/// What may lie behind its strongest group; empty: nothing is known of such groups.
+[[nodiscard]] std::string look_for(const inference::FreeForceFound& found);
 /// "log odds 8.1, at least 20 needed"
 [[nodiscard]] std::string too_little(const std::string& what, double value, const std::string& how, double needed);
 

@@ -54,6 +54,7 @@ Json correction_json(const CorrectionGiven& given) {
   json["stands_in_later_runs"] = given.goes_on;
   json["refused"] = given.refused;
   json["words"] = given.words;
+  if (!given.look_for.empty()) json["look_for"] = given.look_for;
   json["log_odds"] = finite(given.log_odds);
   json["size"] = finite(given.size);
   json["error_where_not_fitted"] = {{"ratio", finite(given.held_out)},
@@ -98,15 +99,17 @@ std::string correction_line(const CorrectionGiven& given) {
     if (std::ranges::find(kinds, term.group) == kinds.end()) kinds.push_back(term.group);
   }
   constexpr std::size_t kShort = 60;  // characters: what is longer is read in the section
-  const bool told = given.formula && given.formula->equation.size() <= kShort;
-  std::string with = told ? given.formula->equation : kinds.empty() ? "" : kinds.front();
   const std::string where = given.terms.empty() ? "" : model::where(given.terms.front());
-  if (!where.empty()) with += ", " + where;
-  if (!told && kinds.size() > 1) with += " and " + std::to_string(kinds.size() - 1) + " more";
+  const bool told = where.empty() && given.formula && given.formula->equation.size() <= kShort;
+  std::string with = told ? given.formula->equation : kinds.empty() ? "" : kinds.front();
+  if (!where.empty()) with += ": " + where;
+  if (!told && kinds.size() > 1)
+    with += (where.empty() ? " and " : ", and ") + std::to_string(kinds.size() - 1) + " more";
   return "<b>A correction, not a cause: a learned force, " + percent(given.size) + " of the applied force</b>" +
          (with.empty() ? "" : " (" + escape(with) + ")") + "; where its weights were not fitted, the error is " +
-         percent(1.0 - given.held_out) + " lower<details><summary>what it is, and what is left</summary>" +
-         escape(given.words) + "</details>";
+         percent(1.0 - given.held_out) + " lower" +
+         (given.look_for.empty() ? "" : ". <b>Look for " + escape(given.look_for) + "</b>") +
+         "<details><summary>what it is, and what is left</summary>" + escape(given.words) + "</details>";
 }
 
 std::string correction_section(const DiagnosisResult& result, Album* album) {

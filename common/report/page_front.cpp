@@ -205,6 +205,8 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
         return !effect.accepted || of_own_flow(effect);
       }))
     said = {"adequate", "Nothing is missing but what the flow past this craft does, and that was found"};
+  if (result.verdict == "unexplained" && !result.wiring && result.correction && result.correction->adopted)
+    said.words = "None of the known causes fits: what is missing was learned";
   std::string html = "<header><h1>Why does " + escape(result.vehicle) +
                      " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" + causes(result) +

@@ -46,12 +46,13 @@ struct FormulaGiven {
 };
 
 struct CorrectionGiven {
-  bool asked{false};    ///< something unlisted was there to be learned
-  bool adopted{false};  ///< it is part of the model that is reported and exported
-  bool carried{false};  ///< and of what is told of other runs, without what depends on time
-  bool goes_on{false};  ///< time-dependent laws of it stand as they were at the end where a recording's clock goes on
-  std::string refused;  ///< why it is not adopted, with numbers
-  std::string words;    ///< a sentence
+  bool asked{false};     ///< something unlisted was there to be learned
+  bool adopted{false};   ///< it is part of the model that is reported and exported
+  bool carried{false};   ///< and of what is told of other runs, without what depends on time
+  bool goes_on{false};   ///< time-dependent laws of it stand as they were at the end where a recording's clock goes on
+  std::string refused;   ///< why it is not adopted, with numbers
+  std::string words;     ///< a sentence
+  std::string look_for;  ///< what may lie behind it: a hint, no finding
   double log_odds{}, size{};
   double held_out{1.0};          ///< error over the base model's, geometric mean over what no weight was fitted to
   double held_out_carried{1.0};  ///< the same without what depends on time

@@ -136,6 +136,9 @@ TEST_CASE("correction: the first screen has a line of it; the whole sentence fol
       given.terms.begin(),
       {"a pull toward a point", model::kPull, {{"stretch", 0, 0, 1.5, -2.0, 3.0, 1.25}}, 2.0, 0.5, 0.01, true});
   CHECK(
-      report::correction_line(given).find("a pull toward a point, point at N 1.5 m, E -2 m, D 3 m, acting from 1.25 m "
-                                          "away and 4 more") != std::string::npos);
+      report::correction_line(given).find("a pull toward a point: point at N 1.5 m, E -2 m, D 3 m, acting from 1.25 m "
+                                          "away, and 4 more") != std::string::npos);
+  CHECK(report::correction_line(given).find("Look for") == std::string::npos);
+  given.look_for = "a tether that is made fast there";
+  CHECK(report::correction_line(given).find("Look for a tether that is made fast there") != std::string::npos);
 }

@@ -184,7 +184,9 @@ TEST_CASE("What is constant but for rounding is drawn too") {
 TEST_CASE("What no known cause fits is called so") {
   fathom::DiagnosisReport report = made_up_report({.samples = 0});
   report.result.verdict = "unexplained";
-  CHECK(has(to_html(report), "none of the known causes fits"));
+  CHECK(has(to_html(report), "Something is missing, and none of the known causes fits"));
+  report.result.correction = fathom::CorrectionGiven{.asked = true, .adopted = true};
+  CHECK(has(to_html(report), "None of the known causes fits: what is missing was learned"));
 }
 
 TEST_CASE("Traces that are all gaps, constant or too short do not break the page") {
