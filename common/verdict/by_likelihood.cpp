@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "common/learning/left_out.hpp"
 #include "common/learning/steps.hpp"
 #include "common/learning/wording.hpp"
 #include "common/likelihood/between_runs.hpp"

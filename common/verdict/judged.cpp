@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/identification/sparse.hpp"
+#include "common/learning/left_out.hpp"
 #include "common/learning/spread.hpp"
 #include "common/learning/wording.hpp"
 #include "common/residual/force_residual.hpp"

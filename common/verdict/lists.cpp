@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/preflight/applicability.hpp"
+#include "common/verdict/by_likelihood.hpp"
 
 namespace fathom::verdict {
 namespace {
