@@ -133,13 +133,12 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   if (!settings.learn || !conclusion.found.best.fit.finite || !lacking) return learned;
   const Fit& base = conclusion.found.best.fit;
   const model::Scene scene = model::scene_of(*problem.vehicle, of);
-  // The likeliest; what was found another way; and what lasts, found and fitted by itself.
-  std::optional<inference::FreeForceFound> free = conclusion.found.free_force, other, lasting;
+  std::optional<inference::FreeForceFound> free = conclusion.found.free_force, lasting;
   // A screen of all products of an hour costs minutes: long recordings are learned by the search's broad groups alone.
   if (!conclusion.found.cut_short && !inference::stretches_of(problem, {})) {
     Sought sought = seek_force(problem, base, scene, limits, threads, progress);
-    if (sought.all.fit.finite) other = std::move(sought.all);
-    if (other && !(free && free->fit.finite && free->log_odds > other->log_odds)) std::swap(free, other);
+    if (sought.all.fit.finite && !(free && free->fit.finite && free->log_odds > sought.all.log_odds))
+      free = std::move(sought.all);
     if (sought.lasting.fit.finite) lasting = std::move(sought.lasting);
   } else {
     progress.expect(kSeek.phase, 0);
@@ -204,18 +203,6 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   if (formula && (formula->over_learned < -limits.form || formula->over_base < limits.odds)) formula.reset();
   if (formula && !adopt(formula->fit)) formula.reset();
   if (!formula) (void)adopt(free->fit);
-  // Where that does not hold on stretches that were left out, what was found another way may.
-  if (!given.adopted && other && other->fit.finite && other->log_odds >= limits.odds &&
-      other->size.share >= limits.size) {
-    const CorrectionGiven refused =
-        std::exchange(given, CorrectionGiven{.asked = true, .log_odds = other->log_odds, .size = other->size.share});
-    other->fit = with_inner_numbers(problem, std::move(other->fit), threads);
-    if (adopt(other->fit)) {
-      free = std::move(other);
-    } else {
-      given = refused;
-    }
-  }
   // What holds on this recording alone helps no other: what lasts, found and fitted without it, may.
   if (lasting && !judged_here && !given.carried && !given.goes_on) {
     Learned alone = std::exchange(learned, {});

@@ -110,9 +110,10 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
       all.push_back({.words = words, .columns = {factors}, .of = of, .searched = true});
     };
     for (const std::vector<Factor>& bump : bumps) sought(", about a place", bump, kWorldTerm);
-    for (const Factor& distance : distances_of(Room{problem}))
+    const Room where{problem};
+    for (const Factor& distance : distances_of(where))
       sought(", by the distance to a point", {distance}, kWorldTerm | kGoingTerm);
-    for (const Factor& distance : plan_distances_of(Room{problem}))
+    for (const Factor& distance : plan_distances_of(where))
       sought(", by the distance in the plan", {distance}, kWorldTerm | kGoingTerm);
   }
   if (scene.attitude) {

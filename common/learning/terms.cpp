@@ -171,9 +171,8 @@ class Terms {
       for (int k = 0; k < kBends; ++k) {
         Factor bend = own(quantity);
         bend.a = kSmallestBend * std::pow(kBendRatio, k) * of.knots.front().a;
-        all.push_back({.words = std::string{quantity == Quantity::kThrustHeld ? "the force up to a size of "
-                                                                              : "the force below a size of "} +
-                                of.words,
+        all.push_back({.words = "a thrust curve of " + of.words +
+                                (quantity == Quantity::kThrustHeld ? ", up to a size" : ", below a size"),
                        .axis = of.axis,
                        .columns = {{bend}},
                        .searched = true});

@@ -18,11 +18,9 @@ constexpr std::size_t kMostCurves = 8;
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-std::string factor_words(const CorrectionFactor& factor) {
-  const auto quantity = model::quantity_from(factor.quantity);
-  if (!quantity) return factor.quantity;
-  return model::kind_of(*quantity).words(
-      {*quantity, factor.index, factor.bank, factor.a, factor.b, factor.c, factor.d, factor.column});
+std::string factor_words(const CorrectionFactor& told) {
+  const auto factor = model::factor_of(told);
+  return factor ? model::kind_of(factor->quantity).words(*factor) : told.quantity;
 }
 
 }  // namespace

@@ -129,14 +129,14 @@ class Diagnosing {
                                      learning::as_model(learned_.fit.hypothesis, judges_.input_step, force_));
     if (1.0 + more <= learning_.limits.judged) return;
     force_ = nullptr;
-    result().correction->goes_on = false;
     refuse(learning::too_little("error on runs that judge, over the model's without it", 1.0 + more, "at most",
                                 learning_.limits.judged));
   }
 
   void refuse(const std::string& why) {
-    result().correction->adopted = result().correction->carried = false;
-    result().correction->refused = why;
+    CorrectionGiven& correction = *result().correction;
+    correction.adopted = correction.carried = correction.goes_on = false;
+    correction.refused = why;
   }
 
   void judge() {

@@ -4,14 +4,19 @@
 
 namespace fathom::model {
 
+std::optional<Factor> factor_of(const CorrectionFactor& told) {
+  const auto quantity = quantity_from(told.quantity);
+  if (!quantity) return std::nullopt;
+  return Factor{*quantity, told.index, told.bank, told.a, told.b, told.c, told.d, told.column};
+}
+
 std::optional<Feature> feature_of(const CorrectionTerm& term) {
   Feature feature{.axis = term.axis, .count = static_cast<int>(term.factors.size()), .scale = term.scale};
   if (term.factors.size() > feature.factors.size()) return std::nullopt;
   for (std::size_t i = 0; i < term.factors.size(); ++i) {
-    const CorrectionFactor& f = term.factors[i];
-    const auto quantity = quantity_from(f.quantity);
-    if (!quantity) return std::nullopt;
-    feature.factors[i] = {*quantity, f.index, f.bank, f.a, f.b, f.c, f.d, f.column};
+    const auto factor = factor_of(term.factors[i]);
+    if (!factor) return std::nullopt;
+    feature.factors[i] = *factor;
   }
   return feature;
 }

@@ -9,6 +9,8 @@
 
 namespace fathom::model {
 
+/// None where it names a quantity that is not known.
+[[nodiscard]] std::optional<Factor> factor_of(const CorrectionFactor& told);
 /// None where it names a quantity that is not known, or has too many factors.
 [[nodiscard]] std::optional<Feature> feature_of(const CorrectionTerm& term);
 /// Of a law that has a place: "point at N 1 m, E 2 m"; others: empty.

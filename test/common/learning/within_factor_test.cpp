@@ -45,6 +45,10 @@ TEST_CASE("within factor: an edge that turns is where the box ends, and no reach
   settle(hanging, room);
   CHECK(hanging.d == 0.0);
   CHECK(inner_of(hanging, room).size() == 3);  // it has no depth
+  Factor bend{.quantity = Quantity::kThrustBelow, .a = -2.0};
+  settle(bend, room);
+  CHECK(bend.a > 0.0);
+  CHECK(inner_of(bend, room).size() == 1);
   CHECK_FALSE(has_inner({.quantity = Quantity::kDepth}));
 }
 
