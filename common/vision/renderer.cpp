@@ -112,9 +112,26 @@ void Renderer::paint_tag(const model::Tag& tag) {
   const Eigen::Vector2d middle = (tag.p_WT.head<2>() - corner_) / settings_.grain;
   cv::Mat& picture = floor_pictures_.front();
   constexpr int kFine = 4;
+  const double pixel = 0.75 * settings_.grain;  // m, more than half of a pixel's diagonal: within it the pixel lies
+  const auto cell_at = [&](double x, int cells) { return static_cast<int>(std::floor(x / cell + 0.5 * cells)); };
+  const auto value = [&](int u, int v) {
+    const bool outside = u < 0 || v < 0 || u >= printed.cells.cols || v >= printed.cells.rows;
+    return 255.0 * settings_.brightness * (outside || printed.cells.at<std::uint8_t>(v, u) > 127 ? 1.0 : 0.06);
+  };
   for (int y = static_cast<int>(middle.y() - reach); y <= static_cast<int>(middle.y() + reach); ++y) {
     for (int x = static_cast<int>(middle.x() - reach); x <= static_cast<int>(middle.x() + reach); ++x) {
       if (x < 0 || y < 0 || x >= picture.cols || y >= picture.rows) continue;
+      const Eigen::Vector2d centre_T = R_TW * (corner_ + settings_.grain * Eigen::Vector2d{x, y} - tag.p_WT.head<2>());
+      const double farthest = centre_T.cwiseAbs().maxCoeff();
+      if (farthest > half + pixel) continue;
+      // Most pixels lie in one cell, and only those on a border are sampled more finely.
+      const int u0 = cell_at(centre_T.x() - pixel, printed.cells.cols),
+                v0 = cell_at(centre_T.y() - pixel, printed.cells.rows);
+      if (farthest < half - pixel && u0 == cell_at(centre_T.x() + pixel, printed.cells.cols) &&
+          v0 == cell_at(centre_T.y() + pixel, printed.cells.rows)) {
+        picture.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(value(u0, v0));
+        continue;
+      }
       double sum = 0.0;
       for (int k = 0; k < kFine * kFine; ++k) {
         const int row = k / kFine, column = k % kFine;
@@ -125,11 +142,7 @@ void Renderer::paint_tag(const model::Tag& tag) {
           sum += picture.at<std::uint8_t>(y, x);
           continue;
         }
-        const int u = static_cast<int>(std::floor(p_T.x() / cell + 0.5 * printed.cells.cols));
-        const int v = static_cast<int>(std::floor(p_T.y() / cell + 0.5 * printed.cells.rows));
-        const bool outside = u < 0 || v < 0 || u >= printed.cells.cols || v >= printed.cells.rows;
-        const bool white = outside || printed.cells.at<std::uint8_t>(v, u) > 127;
-        sum += 255.0 * settings_.brightness * (white ? 1.0 : 0.06);
+        sum += value(cell_at(p_T.x(), printed.cells.cols), cell_at(p_T.y(), printed.cells.rows));
       }
       picture.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(sum / (kFine * kFine));
     }
@@ -237,17 +250,24 @@ const cv::Mat& Renderer::step(double t, const Pose& pose) {
   const auto number = static_cast<std::uint64_t>(std::llround(t * 1e3)) + seed_;
   const std::uint64_t mixed = (number + 0x9e3779b97f4a7c15ULL) * 0xbf58476d1ce4e5b9ULL;
   const int dx = static_cast<int>((mixed >> 20U) % kNoiseSide), dy = static_cast<int>((mixed >> 40U) % kNoiseSide);
+  cv::Vec3f kept, veil;  // of what comes from the floor, and of what scatters back, per colour
+  for (int c = 0; c < 3; ++c) {
+    kept[c] = static_cast<float>(clear * kTint[c]);
+    veil[c] = static_cast<float>((1.0 - clear) * kVeil[c]);
+  }
   for (int y = 0; y < lit.rows; ++y) {
     const float* from = lit.ptr<float>(y);
     const float* shade = vignette_.ptr<float>(y);
     const cv::Vec3f* grain = noise_.ptr<cv::Vec3f>((y + dy) % kNoiseSide);
     cv::Vec3f* to = bgr_float_.ptr<cv::Vec3f>(y);
-    for (int x = 0; x < lit.cols; ++x) {
-      const cv::Vec3f& n = grain[(x + dx) % kNoiseSide];
-      for (int c = 0; c < 3; ++c) {
-        const double veil = kVeil[c] * (1.0 - clear) * static_cast<double>(shade[x]);
-        to[x][c] = static_cast<float>(clear * kTint[c] * static_cast<double>(from[x]) + veil) + n[c];
+    for (int begin = 0; begin < lit.cols;) {  // pieces within which the noise does not wrap around
+      const int first = (begin + dx) % kNoiseSide, end = std::min(lit.cols, begin + kNoiseSide - first);
+      for (int x = begin; x < end; ++x) {
+        const cv::Vec3f& n = grain[first + x - begin];
+        to[x] = {kept[0] * from[x] + veil[0] * shade[x] + n[0], kept[1] * from[x] + veil[1] * shade[x] + n[1],
+                 kept[2] * from[x] + veil[2] * shade[x] + n[2]};
       }
+      begin = end;
     }
   }
   add_dot(pose);

@@ -55,6 +55,7 @@ Estimate estimate(const IncrementFit& fit, const std::function<double(const Eige
     moved[i] = fit.theta[i];
   }
   settle(result, uncertainty(fit, gradient));
+  if (fit.unseen_delay > 0.0) result.sigma = std::hypot(result.sigma, gradient.dot(fit.per_delay) * fit.unseen_delay);
   if (bracket) {
     // The sensor's own noise pulls the plain value toward zero, taking it out may overshoot: the truth is between.
     const double half = 0.5 * (read(fit.theta_upper) - result.value);

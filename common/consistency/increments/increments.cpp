@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/base/statistics.hpp"
+#include "common/consistency/increments/increment_estimate.hpp"
 #include "common/consistency/increments/increment_normals.hpp"
 
 namespace fathom::consistency {
@@ -17,6 +18,7 @@ constexpr double kFineStep = 0.02;    // s: the cost is a parabola over this
 constexpr double kOutlier = 8.0;      // robust sigmas; 6 would flag a clean hour of data
 constexpr std::size_t kFewestWindows = 60;
 constexpr double kSharp = 0.8;          // least over median cost of all delays
+constexpr double kUsualDelay = 0.1;     // s, one sigma of a delay that these data do not show
 constexpr double kLeverSeen = 30.0;     // energy of a lever column over its noise: the bias stays under 5 mm
 constexpr double kBlockSeconds = 30.0;  // longer than any closed loop remembers
 
@@ -222,11 +224,11 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
   std::array<std::vector<Normals>, 3> normals;
   Vertex vertex;
   Rows rows;
-  for (int round = 0; round < 5; ++round) {
+  const auto look = [&](bool weighed) {
     middle.shift(spline, delay);
     Normals all(columns);
     for (std::size_t i = 0; i < weights.size(); ++i) {
-      const double weight = round == 0 ? 1.0 : weights[i];
+      const double weight = weighed ? weights[i] : 1.0;
       if (weight > 0.0 && middle.rows(i, rows)) all.add(rows, problem.y[i], weight);
     }
     fit.theta = all.solve();
@@ -244,6 +246,9 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
         list[block].add(rows, problem.y[i], weights[i]);
       }
     }
+  };
+  for (int round = 0; round < 5; ++round) {
+    look(round > 0);
     std::array<double, 3> cost{};
     for (std::size_t node = 0; node < 3; ++node) {
       Normals sum(columns);
@@ -259,7 +264,13 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
   // A cost that hardly depends on the delay (no motion but noise) has a least value too.
   const bool sharp = best.cost < kSharp * median(costs);
   fit.delay_found = options.search_delay && vertex.inside && sharp && std::abs(delay) < options.longest_delay;
+  const bool unseen = options.search_delay && !fit.delay_found;
+  if (unseen) {  // the least value of a flat cost is noise's: where slow motion hides a delay, scale and arm go with it
+    delay = 0.0;
+    look(true);
+  }
 
+  std::array<Eigen::VectorXd, 3> ends;  // theta of all blocks at the three delays
   const auto solve_all = [&](int without, double& offset, const Eigen::VectorXd* noise) {
     std::array<Eigen::VectorXd, 3> theta;
     std::array<double, 3> cost{};
@@ -277,6 +288,7 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
     }
     if (noise == nullptr)
       offset = fit.delay_found ? std::clamp(parabola(cost[0], cost[1], cost[2]).offset, -1.0, 1.0) : 0.0;
+    if (without < 0 && noise == nullptr) ends = theta;
     return Eigen::VectorXd(through(theta[0], theta[1], theta[2], offset));
   };
   double offset = 0.0;
@@ -302,6 +314,11 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
     fit.delay_information.push_back(std::max(square(0) - 2.0 * square(1) + square(2), 0.0) / (kFineStep * kFineStep));
   }
   fit.noise = noise_of(normals[1], fit.theta);
+  if (unseen) {
+    fit.per_delay = (ends[2] - ends[0]) / (2.0 * kFineStep);
+    const double told = delay_uncertainty(fit).sigma;
+    fit.unseen_delay = told > 0.0 ? told * kUsualDelay / std::hypot(told, kUsualDelay) : kUsualDelay;
+  }
 
   middle.shift(spline, fit.delay);
   const Misfits misfit = misfits(problem, middle, fit.theta, 1);

@@ -41,7 +41,9 @@ struct IncrementFit {
   bool ok{false};
   std::string why_not;      ///< when not ok
   double delay{};           ///< s, sensor lags the reference: sensor(t + delay) belongs to reference(t)
-  bool delay_found{false};  ///< false: the optimum lies at the edge of the search
+  bool delay_found{false};  ///< false: the optimum lies at the edge, or the motion hides a delay; theta is that of none
+  double unseen_delay{};    ///< s, one sigma of a delay that was not found and may be there
+  Eigen::VectorXd per_delay;  ///< 1/s, by how much theta would change with it
   Eigen::VectorXd theta;
   Eigen::VectorXd theta_upper;  ///< with the sensor's noise taken out of the normal equations: brackets the truth
   std::vector<double> delay_replicates;               ///< delete-block

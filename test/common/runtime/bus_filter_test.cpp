@@ -213,8 +213,7 @@ TEST_CASE("bus filter: what is sent to this host past the bus is not believed, f
       close(socket);
     };
     for (int i = 0; i < 5; ++i) send("127.0.0.1");
-    CHECK(heard(input, 1).empty());
-    send("239.255.76.67");
+    send("239.255.76.67");  // queued behind them
     CHECK(heard(input, 2).size() == 1);
   }
 }
