@@ -28,7 +28,7 @@ struct Symbol {
 };
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::array<Symbol, 47> kSymbols{{
+constexpr std::array<Symbol, 49> kSymbols{{
     {"m", {1.0, {1}}},
     {"mm", {1e-3, {1}}},
     {"cm", {1e-2, {1}}},
@@ -71,6 +71,8 @@ constexpr std::array<Symbol, 47> kSymbols{{
     {"mrad", {1e-3, {0, 0, 0, 0, 0, 0, 1}}},
     {"deg", {kPi / 180.0, {0, 0, 0, 0, 0, 0, 1}}},
     {"rpm", {2.0 * kPi / 60.0, {0, 0, -1, 0, 0, 0, 1}}},
+    {"rps", {2.0 * kPi, {0, 0, -1, 0, 0, 0, 1}}},
+    {"rev", {2.0 * kPi, {0, 0, 0, 0, 0, 0, 1}}},
     {"G", {9.80665, {1, 0, -2}}},  // of accelerometers; gauss has no use here
     {"mG", {9.80665e-3, {1, 0, -2}}},
     {"%", {1e-2, {}}},

@@ -225,6 +225,9 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given, co
   file["error"]["before"] = error(result.error_before);
   file["error"]["after"] = error(result.error_after);
   file["error"]["improvement"] = improvement;
+  file["error"]["foretold"] = {{"windows", result.foretold.windows},
+                               {"cut", result.foretold.cut},
+                               {"typical_s", number_or_null(result.foretold.typical)}};
   file["parameters"]["before"] = named(result.parameters_before);
   file["parameters"]["after"] = named(result.parameters_after);
   file["covariance"] = covariance(given);

@@ -146,10 +146,12 @@ std::string error_section(const DiagnosisResult& result, Album& album) {
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
     if (predicted(result, axis)) html += "<figure>" + album.place(draw_errors(result, axis)) + "</figure>";
   }
-  html += "</div>\n" + error_table(result) +
-          "<p class=\"small soft\">R² says how much of the motion is predicted: 1 is all of it, 0 is no better than "
-          "assuming the "
-          "average, below 0 is worse than that.</p>\n";
+  html += "</div>\n" + error_table(result);
+  if (const std::string words = how_far(result.foretold); !words.empty()) html += "<p>" + words + "</p>\n";
+  html +=
+      "<p class=\"small soft\">R² says how much of the motion is predicted: 1 is all of it, 0 is no better than "
+      "assuming the "
+      "average, below 0 is worse than that.</p>\n";
   std::string forces;
   for (const Axis& a : kAxes) {
     const auto before = result.error_before.force_rmse.find(a.force);

@@ -92,6 +92,7 @@ void errors(Text& out, const DiagnosisResult& result) {
       out.line(row);
     }
   }
+  if (const std::string words = how_far(result.foretold); !words.empty()) out.paragraph(words);
   if (std::isfinite(result.improvement.value)) {
     out.paragraph("Normalised error 5 s ahead: reduced by " + percent(result.improvement.value) + " (" +
                   percent_interval(result.improvement.low, result.improvement.high) + ").");

@@ -85,6 +85,15 @@ std::string percent_interval(double low, double high) {
   return "95 %: " + percent(low) + " to " + percent(high);
 }
 
+std::string how_far(const Foretold& foretold) {
+  if (foretold.cut == 0) return "";
+  return "In " + std::to_string(foretold.cut) + " of " + std::to_string(foretold.windows) +
+         " predictions a small change of the start grows fivefold, within " + number(foretold.typical, 2) +
+         " s mostly: errors count so far only, for nobody can foretell more of such a motion from where it was "
+         "measured "
+         "to begin.";
+}
+
 std::string odds(double log_odds) {
   if (std::isnan(log_odds)) return "-";
   const double decades = std::abs(log_odds) / std::numbers::ln10;

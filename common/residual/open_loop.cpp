@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/statistics.hpp"
+
 namespace fathom::residual {
 namespace {
 
@@ -81,6 +83,34 @@ void compare(const model::Model& base, const model::Model& other, std::span<cons
     if (!(one > 0.0) || !std::isfinite(one)) continue;
     compared.log_ratio.push_back(std::isfinite(two) && two > 0.0 ? std::log(two / one) : 10.0);
   }
+}
+
+Foreseen foreseen(std::span<const model::Window> windows, std::span<const model::Model* const> models,
+                  const OpenLoop& how) {
+  Foreseen all;
+  std::vector<double> lengths;
+  const Trial* of = nullptr;
+  Vector6d sizes = Vector6d::Zero();
+  model::VelocityTrace trace;
+  for (model::Window window : windows) {
+    const Trial& trial = *window.trial;
+    if (of != &trial && !models.empty()) sizes = sizes_of(trial, *models.front()->vehicle);
+    of = &trial;
+    std::size_t samples = window.count;
+    for (const model::Model* one : models) {
+      const Vector6d start = model::true_velocity(*one, trial, window.start);
+      if (model::rollout(*one, window, start, trace))
+        samples = std::min(samples, foreseeable(*one, window, start, trace, sizes, how));
+    }
+    const auto least = static_cast<std::size_t>(std::lround(how.shortest / trial.dt)) + 1;
+    samples = std::min(std::max(samples, least), window.count);
+    if (samples < window.count) lengths.push_back(static_cast<double>(samples - 1) * trial.dt);
+    window.count = samples;
+    all.windows.push_back(window);
+  }
+  all.cut = static_cast<int>(lengths.size());
+  if (!lengths.empty()) all.typical = median(std::move(lengths));
+  return all;
 }
 
 std::vector<model::Window> windows_within(const Trial& trial, double from, double to, const OpenLoop& how) {

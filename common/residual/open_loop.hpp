@@ -29,6 +29,18 @@ void compare(const model::Model& base, const model::Model& other, std::span<cons
 [[nodiscard]] std::vector<model::Window> windows_within(const Trial& trial, double from, double to,
                                                         const OpenLoop& how);
 
+/// Windows as far as a motion can be foretold from a measured start.
+struct Foreseen {
+  std::vector<model::Window> windows;
+  int cut{};         ///< of them
+  double typical{};  ///< s, the middle one of those lengths; 0: none was cut
+};
+
+/// Each window to where a small change of its start has grown by `how.growth` in one of the models, `how.shortest` at
+/// least: who errs more behind that has begun elsewhere, and need not be wrong.
+[[nodiscard]] Foreseen foreseen(std::span<const model::Window> windows, std::span<const model::Model* const> models,
+                                const OpenLoop& how = {});
+
 /// Mean over windows with its standard error, as a ratio of errors.
 struct Ratio {
   double value{1.0};

@@ -130,6 +130,8 @@ void read_diagnosis(const Json& file, DiagnosisResult& result) {
   const Json& gain = file.at("error").at("improvement");
   const Json& interval = gain.at("ci95");
   result.improvement = {real(gain, "value"), real(interval.at(0)), real(interval.at(1))};
+  if (const auto far = file.at("error").find("foretold"); far != file.at("error").end())
+    result.foretold = {far->value("windows", 0), far->value("cut", 0), real(*far, "typical_s")};
   result.parameters_before = numbers(file.at("parameters").at("before"));
   result.parameters_after = numbers(file.at("parameters").at("after"));
   if (file.contains("wiring"))

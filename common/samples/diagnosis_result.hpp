@@ -44,6 +44,13 @@ struct ModelError {
   std::vector<PredictionError> prediction;
 };
 
+/// How far the runs that judge can be foretold from a measured start.
+struct Foretold {
+  int windows{};     ///< predictions
+  int cut{};         ///< of them, where a small change of the start has grown fivefold: errors count so far only
+  double typical{};  ///< s, the middle one of those lengths
+};
+
 /// Residual of one degree of freedom.
 struct AxisWhiteness {
   std::string axis;  ///< "X" .. "N"
@@ -134,6 +141,7 @@ struct DiagnosisResult {
   ModelError error_before;
   ModelError error_after;
   std::optional<WiringFault> wiring{};
+  Foretold foretold{};
   Interval improvement;  ///< relative reduction of the normalised 5 s prediction error on validation
   std::vector<NamedValue> parameters_before;
   std::vector<NamedValue> parameters_after;

@@ -18,6 +18,7 @@ namespace {
 constexpr const char* kCanonical =
     "t; x y z; phi theta psi; u v w; p q r; ax ay az; f1..fN or X Y Z K M N; pwm1..pwmN; depth; voltage; range_A, "
     "range_B, ...; load_A, load_B, ...";
+constexpr const char* kDraft = "; 'fathom import --describe FILE' drafts a map by the columns' names";
 
 constexpr std::array kNames{"t",  "x",  "y",  "z", "phi", "theta", "psi", "u", "v", "w",     "p",       "q",  "r",
                             "ax", "ay", "az", "X", "Y",   "Z",     "K",   "M", "N", "depth", "voltage", "f1", "pwm1"};
@@ -133,7 +134,7 @@ class Shelf {
     }
     if (misspelt.empty()) return;
     throw InputError(table_.path + ":1: unknown columns " + misspelt +
-                     "; without a map (--map) these are known: " + kCanonical);
+                     "; without a map (--map) these are known: " + kCanonical + kDraft);
   }
 
  private:
@@ -201,7 +202,7 @@ ColumnMap canonical_map(const CsvTable& table) {
   if (!map.pose_capture && !map.ahrs && !map.dvl && !map.thrusters && !map.depth && !map.battery && !map.ranges &&
       !map.loads)
     throw InputError(table.path +
-                     ":1: no column besides time is known; without a map (--map) these are: " + kCanonical);
+                     ":1: no column besides time is known; without a map (--map) these are: " + kCanonical + kDraft);
   return map;
 }
 

@@ -1,7 +1,9 @@
 #include "common/verdict/followed_axes.hpp"
 
 #include <algorithm>
+#include <array>
 
+#include "common/residual/open_loop.hpp"
 #include "common/residual/prediction.hpp"
 #include "common/verdict/skill.hpp"
 
@@ -13,7 +15,9 @@ std::vector<int> skilled_axes(const model::Vehicle& vehicle, std::span<const Tri
   std::vector<int> axes;
   const model::Model base = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
   const model::Model named = likelihood::model_of(conclusion.reported.hypothesis, input_step);
-  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(named));
+  const std::vector<model::Window> windows =
+      residual::foreseen(residual::prediction_windows(unseen, residual::lead_of(named)), std::array{&base, &named})
+          .windows;
   if (windows.empty()) return axes;
   const std::array<PlainAxis, 6> plain = plain_fit(vehicle, train);
   const residual::Predictions unchanged = predict_unchanged(windows),

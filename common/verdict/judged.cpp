@@ -1,6 +1,7 @@
 #include "common/verdict/judged.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -41,6 +42,11 @@ Judges::Judges(const model::Vehicle& craft, std::span<const Trial> train, std::s
   });
 }
 
+residual::Foreseen Judges::windows(const model::Model& before, const model::Model& after) const {
+  return residual::foreseen(residual::prediction_windows(unseen, residual::lead_of(after)),
+                            std::array{&before, &after});
+}
+
 const model::LearnedForce* force_for(const learning::Learned& learned, const Judges& judges) {
   if (judges.recorded.empty() || judges.here) return learned.here.get();
   const bool later = std::ranges::all_of(
@@ -53,13 +59,13 @@ bool helps(const Interval& gain) { return gain.low > 0.0 || (std::isinf(gain.low
 Interval held_back(const Judges& judges, const Conclusion& conclusion) {
   const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, judges.input_step);
   const model::Model after = likelihood::model_of(conclusion.reported.hypothesis, judges.input_step);
-  const std::vector<model::Window> windows = residual::prediction_windows(judges.unseen, residual::lead_of(after));
+  const std::vector<model::Window> windows = judges.windows(before, after).windows;
   if (windows.empty()) return {kNotAsked, kNotAsked, kNotAsked};
   return residual::improvement(residual::predict(before, windows), residual::predict(after, windows), judges.vehicle);
 }
 
 double raises_error(const Judges& judges, const model::Model& before, const model::Model& after) {
-  const std::vector<model::Window> windows = residual::prediction_windows(judges.unseen, residual::lead_of(after));
+  const std::vector<model::Window> windows = judges.windows(before, after).windows;
   if (windows.empty()) return 0.0;
   return -residual::improvement(residual::predict(before, windows), residual::predict(after, windows), judges.vehicle)
               .value;
@@ -82,8 +88,10 @@ void judge_predictions(const Judges& judges, const model::Model& before, const m
         {model::kAxisNames[static_cast<std::size_t>(conclusion.random[i].axis)], free->explainable[i]});
   // The fitted runs are seen by the same steps of time.
   report.unseen_event = residual::unseen_event(after, in_steps(train), unseen);
-  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(after));
+  const residual::Foreseen foreseen = judges.windows(before, after);
+  const std::vector<model::Window>& windows = foreseen.windows;
   if (windows.empty()) return;
+  result.foretold = {static_cast<int>(windows.size()), foreseen.cut, foreseen.typical};
   const residual::Predictions by_before = residual::predict(before, windows),
                               by_after = residual::predict(after, windows);
   result.error_before.prediction = by_before.summary(vehicle);

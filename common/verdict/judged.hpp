@@ -6,6 +6,7 @@
 
 #include "common/inference/infer.hpp"
 #include "common/learning/learn.hpp"
+#include "common/residual/open_loop.hpp"
 #include "common/samples/diagnosis_result.hpp"
 #include "common/samples/verdict_given.hpp"
 
@@ -14,6 +15,9 @@ namespace fathom::verdict {
 /// The runs that judge, in steps of 40 ms, beside those that were fitted. Refers to its arguments.
 struct Judges {
   Judges(const model::Vehicle& craft, std::span<const Trial> train, std::span<const Trial> validate);
+
+  /// Predictions by both models, each as far as a motion can be foretold; begun when `after` remembers what it should.
+  [[nodiscard]] residual::Foreseen windows(const model::Model& before, const model::Model& after) const;
 
   const model::Vehicle& vehicle;
   std::span<const Trial> fitted;

@@ -319,8 +319,19 @@ FromSource read_source(const Source& source, const std::string& map,
   return out;
 }
 
-std::string describe_source(const Source& source, const std::optional<tables::SimulatedAxes>& simulated) {
-  if (source.is_table()) return recordings::describe_table(tables::read_csv(source.files.front()));
+std::string describe_source(const Source& source, const std::optional<model::Vehicle>& vehicle) {
+  using By = recordings::Commanded::By;
+  if (source.is_table()) {
+    std::vector<recordings::Commanded> actuators;
+    for (const model::Thruster& one : vehicle ? vehicle->thrusters : std::vector<model::Thruster>{}) {
+      const By by = one.command == model::CommandKind::kShaftSpeed ? By::kShaftSpeed
+                    : one.command == model::CommandKind::kFinAngle || one.command == model::CommandKind::kAzimuthAngle
+                        ? By::kAngle
+                        : By::kOther;
+      actuators.push_back({one.name, by});
+    }
+    return recordings::describe_table(tables::read_csv(source.files.front()), actuators);
+  }
   if (source.format == nullptr && !source.types)
     throw InputError(source.files.front() + ": --describe is for recordings with topics; " +
                      (source.lcm ? "an LCM log of Fathom is read by 'fathom check' and the others as it is; for one of "
@@ -331,6 +342,7 @@ std::string describe_source(const Source& source, const std::optional<tables::Si
   const std::string draft = recordings::draft_map(content);
   if (draft.empty())
     return text + "# None of the topics is a usual one: a map must be written by hand (docs/configuration.md).\n";
+  const auto simulated = vehicle ? std::optional<tables::SimulatedAxes>{vehicle->dof} : std::nullopt;
   recordings::PartedImport import{source.topics(), tables::parse_streams(draft, "draft map"), simulated, false};
   if (import.recordings() == 1) {
     recordings::Worth worth;

@@ -8,6 +8,7 @@
 
 #include "common/exports/channel_tables.hpp"
 #include "common/exports/foreign_lcm.hpp"
+#include "common/model/vehicle.hpp"
 #include "common/recordings/formats.hpp"
 #include "common/recordings/import.hpp"
 #include "common/samples/recording.hpp"
@@ -74,7 +75,7 @@ void add_runs(recordings::ImportedFiles imported, const Source& source, FromSour
 [[nodiscard]] FromSource read_source(const Source& source, const std::string& map,
                                      const std::optional<tables::SimulatedAxes>& simulated);
 
-/// What a source holds, and the draft of its map: YAML that runs as it is.
-[[nodiscard]] std::string describe_source(const Source& source, const std::optional<tables::SimulatedAxes>& simulated);
+/// What a source holds, and the draft of its map: YAML that runs as it is, as far as this vehicle moves.
+[[nodiscard]] std::string describe_source(const Source& source, const std::optional<model::Vehicle>& vehicle);
 
 }  // namespace fathom::tool

@@ -191,15 +191,17 @@ void write_merged(const ImportOptions& options, const std::vector<Source>& sourc
 
 void run_import(const ImportOptions& options) {
   std::optional<tables::SimulatedAxes> simulated;
+  std::optional<model::Vehicle> vehicle;
   if (!options.vehicle.empty()) {
-    const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
-    simulated = vehicle.dof;
-    for (const std::string& map : options.maps) check_command_units(map, vehicle);
-    if (const std::string note = model::undriven_note(vehicle); !note.empty()) std::printf("%s\n", note.c_str());
+    vehicle = model::Vehicle::load(options.vehicle);
+    simulated = vehicle->dof;
+    for (const std::string& map : options.maps) check_command_units(map, *vehicle);
+    if (const std::string note = model::undriven_note(*vehicle); !note.empty())
+      std::printf("%s%s\n", options.describe ? "# " : "", note.c_str());
   }
   const std::vector<Source> sources = sources_of(options.data, options.types);
   if (options.describe) {
-    for (const Source& source : sources) std::printf("%s", describe_source(source, simulated).c_str());
+    for (const Source& source : sources) std::printf("%s", describe_source(source, vehicle).c_str());
     return;
   }
   if (options.out.empty()) throw InputError("--out is missing: the log to write, or a folder for several runs");

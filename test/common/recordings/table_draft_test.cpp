@@ -107,4 +107,24 @@ TEST_CASE("table draft: a Slocum's own names") {
   CHECK(run.thrusters[0].pwm_us.at(1) == doctest::Approx(0.0127));
 }
 
+TEST_CASE("table draft: columns that are called as the vehicle's actuators are command them, in its order") {
+  using By = recordings::Commanded::By;
+  const auto draft = [](const std::string& header, const std::string& row,
+                        const std::vector<recordings::Commanded>& actuators) {
+    std::string text = "t," + header + "\n";
+    for (int k = 0; k < 4; ++k) text += std::to_string(k) + "," + row + "\n";
+    return recordings::describe_table(tables::parse_csv(text, "run.csv"), actuators);
+  };
+  const std::vector<recordings::Commanded> ship{{"propeller", By::kShaftSpeed}, {"rudder", By::kAngle}};
+  const auto holds = [](const std::string& text, const char* what) { return text.find(what) != std::string::npos; };
+  CHECK(holds(draft("u,Rudder,propeller [rev/s]", "1,0.5,17", ship),
+              "inputs: {columns: [propeller, Rudder], units: [rev/s, rad]}"));
+  CHECK(holds(draft("u,delta,n", "1,20,900", ship), "inputs: {columns: [n, delta], units: [rpm, deg]}"));
+  CHECK(holds(draft("u,delta", "1,20", ship), "# inputs: a column for propeller is to be found"));
+  const std::vector<recordings::Commanded> twin{{"port", By::kShaftSpeed}, {"starboard", By::kShaftSpeed}};
+  CHECK(holds(draft("u,n_starboard,n_port", "1,2,3", twin),
+              "inputs: {columns: [n_port, n_starboard], units: [rpm, rpm]}"));
+  CHECK(!holds(draft("u,n,rudder", "1,2,3", twin), "inputs"));  // which of two shafts 'n' is, nobody knows
+}
+
 }  // namespace fathom
