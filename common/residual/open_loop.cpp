@@ -1,6 +1,7 @@
 #include "common/residual/open_loop.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/base/statistics.hpp"
@@ -33,18 +34,25 @@ double scaled_square(const Vector6d& x, const Vector6d& sizes) {
   return sum;
 }
 
+/// Changes of a start: sway and heave with what turns them, and against it, since what one does to a craft that turns
+/// by itself the other may undo.
+constexpr std::array kChanges{std::array{1.0, 1.0, 1.0, 1.0, 1.0, 1.0}, std::array{1.0, -1.0, -1.0, 1.0, 1.0, 1.0}};
+
 /// Samples over which a small change of the start stays small.
 std::size_t foreseeable(const model::Model& model, const model::Window& window, const Vector6d& nu0,
                         const model::VelocityTrace& trace, const Vector6d& sizes, const OpenLoop& how) {
   model::VelocityTrace moved;
-  const Vector6d change = how.start_change * sizes;
-  model::rollout(model, window, nu0 + change, moved);
-  const double limit = how.growth * how.growth * scaled_square(change, sizes);
-  for (Eigen::Index k = 0; k < trace.cols(); ++k) {
-    const double apart = scaled_square(moved.col(k) - trace.col(k), sizes);
-    if (!(apart <= limit)) return static_cast<std::size_t>(k);
+  auto samples = static_cast<std::size_t>(trace.cols());
+  for (const auto& way : kChanges) {
+    const Vector6d change = how.start_change * sizes.cwiseProduct(Eigen::Map<const Vector6d>{way.data()});
+    model::rollout(model, window, nu0 + change, moved);
+    const double limit = how.growth * how.growth * scaled_square(change, sizes);
+    for (std::size_t k = 0; k < samples; ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      if (!(scaled_square(moved.col(at) - trace.col(at), sizes) <= limit)) samples = k;
+    }
   }
-  return static_cast<std::size_t>(trace.cols());
+  return samples;
 }
 
 double error_of(const model::VelocityTrace& trace, const model::Window& window, std::size_t samples,
