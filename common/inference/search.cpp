@@ -5,6 +5,7 @@
 #include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/searching.hpp"
+#include "common/inference/starts.hpp"
 #include "common/likelihood/fitting.hpp"
 
 namespace fathom::inference {
@@ -186,12 +187,11 @@ std::vector<Proposal> Searching::proposals(const Fitted& from, double least, boo
   return unlike;
 }
 
-std::vector<Start> Searching::starts(const likelihood::Hypothesis& from, const std::vector<Proposal>& proposals) {
-  std::vector<Start> starts;
-  for (const Proposal& proposal : proposals) {
-    starts.push_back({from, proposal.noise});
-    for (const model::ActiveEffect& active : proposal.added) starts.back().hypothesis.model.add(active);
-  }
+std::vector<Start> Searching::starts(const likelihood::Hypothesis& from, const std::vector<Proposal>& proposals) const {
+  std::vector<Start> starts(proposals.size());
+  for_each_index(starts.size(), threads_, [&](std::size_t i) {
+    starts[i] = start_of(problem_, laws_, from, proposals[i].added, proposals[i].noise);
+  });
   return starts;
 }
 

@@ -62,7 +62,8 @@ class Searching {
   /// What promises most beside a model: the best laws and pairs, seen at its noise and, where a random force may have
   /// swallowed something slow, at a fifth of it. `least`: what a promise must come to, in nats.
   std::vector<Proposal> proposals(const Fitted& from, double least, bool with_pairs);
-  static std::vector<Start> starts(const likelihood::Hypothesis& from, const std::vector<Proposal>& proposals);
+  [[nodiscard]] std::vector<Start> starts(const likelihood::Hypothesis& from,
+                                          const std::vector<Proposal>& proposals) const;
   [[nodiscard]] static Start without(const Fitted& from, std::size_t effect);
   /// Takes the best of these where it is a name's worth better; else false.
   bool take_best(std::vector<Fitted> fits);
