@@ -174,12 +174,13 @@ std::string certainty_section(const DiagnosisResult& result) {
       std::ranges::none_of(result.stand_ins, &StandIn::in_model)) {
     html += "<p>Nothing was added to the model: it foretells what it foretold before.</p>\n";
   } else if (std::isfinite(gain.value) && !std::isfinite(gain.low)) {
-    html += "<p>The normalised error 5 s ahead changed by <b>" + escape(percent(-gain.value)) +
-            "</b>. Too few windows judge for an interval: drive longer.</p>\n";
+    html += "<p>The normalised error " + five_seconds_ahead(result.foretold) + " changed by <b>" +
+            escape(percent(-gain.value)) + "</b>. Too few windows judge for an interval: drive longer.</p>\n";
   } else if (std::isfinite(gain.value)) {
     const bool sure = gain.low > 0.0;
     const double low = std::fmin(0.0, gain.low);
-    html += "<p>The normalised error 5 s ahead changed by <b>" + escape(percent(-gain.value)) +
+    html += "<p>The normalised error " + five_seconds_ahead(result.foretold) + " changed by <b>" +
+            escape(percent(-gain.value)) +
             "</b>. With 95 % confidence "
             "the reduction lies between " +
             escape(percent(gain.low)) + " and " + escape(percent(gain.high)) +

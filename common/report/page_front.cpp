@@ -219,14 +219,15 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
     html += tile("0 %", "change of the prediction error: nothing was added to the model");
   } else if (std::isfinite(result.improvement.value)) {
     html += tile(percent(-result.improvement.value),
-                 "change of the prediction error 5 s ahead (" +
+                 "change of the prediction error " + five_seconds_ahead(result.foretold) + " (" +
                      percent_interval(-result.improvement.high, -result.improvement.low) + ")");
   }
   if (telling && at_horizon(result.error_before) != nullptr && at_horizon(result.error_after) != nullptr) {
     const Axis& a = kAxes[*telling];
     const auto rmse = [&](const ModelError& error) { return number(a.scale * at_horizon(error)->rmse[*telling], 3); };
     html += tile((added ? rmse(result.error_before) + " → " : std::string{}) + rmse(result.error_after) + " " + a.unit,
-                 std::string{"error of "} + a.name + " 5 s ahead" + (added ? ", before → after" : ""));
+                 std::string{"error of "} + a.name + " " + five_seconds_ahead(result.foretold) +
+                     (added ? ", before → after" : ""));
   }
   const std::size_t doubts = group_findings(result.consistency).size();
   html += tile(std::to_string(doubts), doubts == 1 ? "doubt about a sensor" : "doubts about sensors");

@@ -94,7 +94,8 @@ void errors(Text& out, const DiagnosisResult& result) {
   }
   if (const std::string words = how_far(result.foretold); !words.empty()) out.paragraph(words);
   if (std::isfinite(result.improvement.value)) {
-    out.paragraph("Normalised error 5 s ahead: reduced by " + percent(result.improvement.value) + " (" +
+    out.paragraph("Normalised error " + five_seconds_ahead(result.foretold) + ": reduced by " +
+                  percent(result.improvement.value) + " (" +
                   percent_interval(result.improvement.low, result.improvement.high) + ").");
   }
 }

@@ -94,6 +94,11 @@ std::string how_far(const Foretold& foretold) {
          "to begin.";
 }
 
+std::string five_seconds_ahead(const Foretold& foretold) {
+  const bool sooner = 2 * foretold.cut > foretold.windows && foretold.typical < 5.0;
+  return sooner ? "as far as it can be foretold, " + number(foretold.typical, 2) + " s mostly" : "5 s ahead";
+}
+
 std::string odds(double log_odds) {
   if (std::isnan(log_odds)) return "-";
   const double decades = std::abs(log_odds) / std::numbers::ln10;

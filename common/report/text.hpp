@@ -38,6 +38,8 @@ extern const std::array<Axis, 6> kAxes;
 [[nodiscard]] std::string percent_interval(double low, double high);
 /// Where a motion can be foretold for a while only, how long that is; else empty.
 [[nodiscard]] std::string how_far(const Foretold& foretold);
+/// "5 s ahead", or how far most motions can be foretold where that is less.
+[[nodiscard]] std::string five_seconds_ahead(const Foretold& foretold);
 /// "20 : 1" for ln 20; powers of ten beyond a million.
 [[nodiscard]] std::string odds(double log_odds);
 /// Three digits; what differs from even odds by less than a hundredth is 0.

@@ -43,7 +43,7 @@ TEST_CASE("result.json holds exactly the promised names") {
   CHECK(file["effects"][1]["rivals"][0]["name"] == "tether_tension");
   CHECK(file["effects"][1]["rivals"][0]["log_odds"] == 1.1);
   CHECK(keys(file["candidates"][0]) == Names{"log_odds", "name", "reason", "variant"});
-  CHECK(keys(file["error"]) == Names{"after", "before", "improvement"});
+  CHECK(keys(file["error"]) == Names{"after", "before", "foretold", "improvement"});
   CHECK(keys(file["error"]["before"]) == Names{"force_rmse", "prediction"});
   CHECK(keys(file["error"]["improvement"]) == Names{"ci95", "value"});
   CHECK(keys(file["parameters"]) == Names{"after", "before"});

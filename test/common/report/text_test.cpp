@@ -57,3 +57,13 @@ TEST_CASE("text: log odds that are even but for rounding are 0") {
   CHECK(log_odds_text(-0.011) == number(-0.011));
   CHECK(log_odds_text(5.894) == "5.89");
 }
+
+TEST_CASE("text: errors say how far a motion can be foretold, where that is less than asked") {
+  CHECK(how_far({40, 0, 0.0}).empty());
+  CHECK(how_far({40, 30, 1.48})
+            .starts_with("In 30 of 40 predictions a small change of the start grows fivefold, within 1.5 s"));
+  CHECK(five_seconds_ahead({40, 0, 0.0}) == "5 s ahead");
+  CHECK(five_seconds_ahead({40, 5, 2.0}) == "5 s ahead");
+  CHECK(five_seconds_ahead({40, 30, 7.0}) == "5 s ahead");
+  CHECK(five_seconds_ahead({40, 30, 1.48}) == "as far as it can be foretold, 1.5 s mostly");
+}
