@@ -42,9 +42,24 @@ std::string pulses_of(const Columns& all) {
          "], unit: us}\n";
 }
 
+using By = Commanded::By;
+
+/// Of a command where its column does not say; empty: nobody knows.
+std::string unit_of(const Group& column, By by) {
+  constexpr double kLargest = 1.6;  // rad: no rudder is laid further
+  switch (by) {
+    case By::kShaftSpeed:
+      return column.unit("rad/s", "rpm");
+    case By::kAngle:
+      return column.unit("rad", column.largest() > kLargest ? "deg" : "rad");
+    case By::kOther:
+      return column.columns[0]->unit;
+  }
+  return "";
+}
+
 /// A column for each actuator: of its name, or of a usual one where it is the only one of its kind.
-std::string inputs_of(const Columns& all, const std::vector<Commanded>& actuators) {
-  using By = Commanded::By;
+ThrustDraft inputs_of(const Columns& all, const std::vector<Commanded>& actuators) {
   std::string list, units, lacking;
   for (const Commanded& one : actuators) {
     const std::string name = lower_case(one.name);
@@ -58,10 +73,7 @@ std::string inputs_of(const Columns& all, const std::vector<Commanded>& actuator
       lacking += (lacking.empty() ? "" : ", ") + one.name;
       continue;
     }
-    constexpr double kLargest = 1.6;  // rad: no rudder is laid further
-    const std::string unit = one.by == By::kShaftSpeed ? group.unit("rad/s", "rpm")
-                             : one.by == By::kAngle    ? group.unit("rad", group.largest() > kLargest ? "deg" : "rad")
-                                                       : group.columns[0]->unit;
+    const std::string unit = unit_of(group, one.by);
     if (unit.empty()) {
       lacking += (lacking.empty() ? "" : ", ") + one.name + " (its column has no unit)";
       continue;
@@ -69,18 +81,19 @@ std::string inputs_of(const Columns& all, const std::vector<Commanded>& actuator
     list += (list.empty() ? "" : ", ") + tables::written_name(*group.columns[0]->name);
     units += (units.empty() ? "" : ", ") + unit;
   }
-  if (list.empty()) return "";
-  if (!lacking.empty()) return "  # inputs: a column for " + lacking + " is to be found, with a unit\n";
-  return "  # signs must be those of the vehicle file\n  inputs: {columns: [" + list + "], units: [" + units + "]}\n";
+  if (list.empty()) return {};
+  if (!lacking.empty()) return {"", "# thrusters, inputs: a column for " + lacking + " is to be found, with a unit\n"};
+  return {"  # signs must be those of the vehicle file\n  inputs: {columns: [" + list + "], units: [" + units + "]}\n",
+          ""};
 }
 
 }  // namespace
 
-std::string thrust_of(const Columns& all, const std::vector<Commanded>& actuators) {
-  for (const std::string& lines : {inputs_of(all, actuators), pulses_of(all), forces_of(all)}) {
-    if (!lines.empty()) return lines;
-  }
-  return "";
+ThrustDraft thrust_of(const Columns& all, const std::vector<Commanded>& actuators) {
+  ThrustDraft draft = inputs_of(all, actuators);
+  if (draft.lines.empty()) draft.lines = pulses_of(all);
+  if (draft.lines.empty()) draft.lines = forces_of(all);
+  return draft;
 }
 
 }  // namespace fathom::recordings

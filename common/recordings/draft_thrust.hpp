@@ -9,7 +9,12 @@
 
 namespace fathom::recordings {
 
-/// Commands of the vehicle's actuators, else pulses, else a wrench, else what a Slocum drives itself by; empty without.
-[[nodiscard]] std::string thrust_of(const Columns& all, const std::vector<Commanded>& actuators);
+struct ThrustDraft {
+  std::string lines;   ///< of the section; empty: nothing drives the craft by these columns
+  std::string remark;  ///< a comment: actuators of which some have no column
+};
+
+/// Commands of the vehicle's actuators, else pulses, else a wrench, else what a Slocum drives itself by.
+[[nodiscard]] ThrustDraft thrust_of(const Columns& all, const std::vector<Commanded>& actuators);
 
 }  // namespace fathom::recordings

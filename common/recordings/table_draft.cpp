@@ -129,10 +129,11 @@ std::string describe_table(const tables::CsvTable& table, const std::vector<Comm
   bool with_depth = false;
   std::string pose = position_of(columns, with_depth), attitude = attitude_of(columns), inertial = inertial_of(columns);
   (pose.empty() ? inertial : pose) += attitude;
+  const ThrustDraft thrust = thrust_of(columns, actuators);
   const std::string streams =
       section("pose_capture", pose) + section("ahrs", inertial) + section("dvl", velocity_of(columns)) +
       section("depth", with_depth ? "" : scalar_of(columns, {"depth", "m_depth"}, "m", "  direction: down\n")) +
-      section("thrusters", thrust_of(columns, actuators)) +
+      section("thrusters", thrust.lines) + thrust.remark +
       section("battery", scalar_of(columns, {"voltage", "volt", "volts", "battery"}, "V", "")) +
       section("wind", wind_of(columns));
   if (time.empty() || streams.empty())

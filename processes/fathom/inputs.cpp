@@ -319,16 +319,22 @@ FromSource read_source(const Source& source, const std::string& map,
   return out;
 }
 
-std::string describe_source(const Source& source, const std::optional<model::Vehicle>& vehicle) {
+namespace {
+
+recordings::Commanded::By commanded_by(model::CommandKind kind) {
   using By = recordings::Commanded::By;
+  if (kind == model::CommandKind::kShaftSpeed) return By::kShaftSpeed;
+  const bool turned = kind == model::CommandKind::kFinAngle || kind == model::CommandKind::kAzimuthAngle;
+  return turned ? By::kAngle : By::kOther;
+}
+
+}  // namespace
+
+std::string describe_source(const Source& source, const std::optional<model::Vehicle>& vehicle) {
   if (source.is_table()) {
     std::vector<recordings::Commanded> actuators;
-    for (const model::Thruster& one : vehicle ? vehicle->thrusters : std::vector<model::Thruster>{}) {
-      const By by = one.command == model::CommandKind::kShaftSpeed ? By::kShaftSpeed
-                    : one.command == model::CommandKind::kFinAngle || one.command == model::CommandKind::kAzimuthAngle
-                        ? By::kAngle
-                        : By::kOther;
-      actuators.push_back({one.name, by});
+    if (vehicle) {
+      for (const model::Thruster& one : vehicle->thrusters) actuators.push_back({one.name, commanded_by(one.command)});
     }
     return recordings::describe_table(tables::read_csv(source.files.front()), actuators);
   }
