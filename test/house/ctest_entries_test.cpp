@@ -21,7 +21,12 @@ using test::shell;
 // All that CMake, ctest, doctest's filters or a shell could take for their own.
 constexpr const char* kAwkward = R"x(ctest: a, b; "c" 'd' \e\, *f* [g [[h]=] ${i} $j @k@ #l (m) %n% ?o? <p> &q| !)x";
 
-std::string self() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
+/// This executable as a shell's words; behind an emulator, if it was compiled for another processor.
+std::string self() {
+  const std::string path = "'" + std::filesystem::read_symlink("/proc/self/exe").string() + "'",
+                    emulator = FATHOM_EMULATOR;
+  return emulator.empty() ? path : "'" + emulator + "' " + path;
+}
 
 /// What ctest reads of this executable, in a folder of its own: the build's may be in use.
 nlohmann::json entries() {
@@ -50,27 +55,27 @@ TEST_CASE(R"x(ctest: a, b; "c" 'd' \e\, *f* [g [[h]=] ${i} $j @k@ #l (m) %n% ?o?
 }
 
 TEST_CASE("ctest: a name that begins like another's runs alone") {
-  CHECK(shell("'" + self() + "' --exactly 'ctest: a name that begins like another'").code == 1);
-  CHECK(shell("'" + self() + "' --exactly 'CTEST: a literal of CMake ends where its text does'").code == 1);
-  const auto ran = shell("'" + self() + "' --exactly 'ctest: a literal of CMake ends where its text does'");
+  CHECK(shell(self() + " --exactly 'ctest: a name that begins like another'").code == 1);
+  CHECK(shell(self() + " --exactly 'CTEST: a literal of CMake ends where its text does'").code == 1);
+  const auto ran = shell(self() + " --exactly 'ctest: a literal of CMake ends where its text does'");
   CHECK(ran.code == 0);
   CHECK_MESSAGE(ran.says("test cases: 1 | 1 passed"), ran.text);
 }
 
 TEST_CASE("ctest: a run in which no case takes part fails") {
-  const auto ran = shell("'" + self() + "' --test-case=nothing-has-this-name");
+  const auto ran = shell(self() + " --test-case=nothing-has-this-name");
   CHECK(ran.code == 1);
   CHECK_MESSAGE(ran.says("0 test cases are meant"), ran.text);
-  CHECK(shell("'" + self() + "' --count").code == 0);
+  CHECK(shell(self() + " --count").code == 0);
 }
 
 TEST_CASE("ctest: a list that cannot be written fails the build") {
-  CHECK(shell("'" + self() + "' --list-for-ctest /nowhere/list").code == 1);
+  CHECK(shell(self() + " --list-for-ctest /nowhere/list").code == 1);
 }
 
 TEST_CASE("ctest: as many entries as the executables have cases") {
   // Of this executable; each lists its own in the same way.
-  const auto counted = shell("'" + self() + "' --list-test-cases --no-intro");
+  const auto counted = shell(self() + " --list-test-cases --no-intro");
   std::set<std::string> names;
   std::istringstream lines{counted.text};
   for (std::string line; std::getline(lines, line);) {

@@ -242,7 +242,8 @@ TEST_CASE("channel filter: a process hears its own channels of a live bus, and i
   REQUIRE(socket != after.end());
   socklen_t instructions = 0;  // asked like this, the kernel tells how many there are
   if (getsockopt(*socket, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions) != 0) {
-    CHECK(errno == ENOPROTOOPT);  // emulators of other processors do not hand this question on
+    // Emulators of other processors do not hand this question on.
+    CHECK((errno == ENOPROTOOPT || errno == EINVAL));
     return;
   }
   CHECK(instructions == bus_program(bus, std::vector<std::string>{"DEPTH", "AHRS"}).size());
