@@ -121,14 +121,13 @@ void Renderer::paint_tag(const model::Tag& tag) {
   for (int y = static_cast<int>(middle.y() - reach); y <= static_cast<int>(middle.y() + reach); ++y) {
     for (int x = static_cast<int>(middle.x() - reach); x <= static_cast<int>(middle.x() + reach); ++x) {
       if (x < 0 || y < 0 || x >= picture.cols || y >= picture.rows) continue;
-      const Eigen::Vector2d centre_T = R_TW * (corner_ + settings_.grain * Eigen::Vector2d{x, y} - tag.p_WT.head<2>());
-      const double farthest = centre_T.cwiseAbs().maxCoeff();
+      const Eigen::Vector2d p_TX = R_TW * (corner_ + settings_.grain * Eigen::Vector2d{x, y} - tag.p_WT.head<2>());
+      const double farthest = p_TX.cwiseAbs().maxCoeff();
       if (farthest > half + pixel) continue;
       // Most pixels lie in one cell, and only those on a border are sampled more finely.
-      const int u0 = cell_at(centre_T.x() - pixel, printed.cells.cols),
-                v0 = cell_at(centre_T.y() - pixel, printed.cells.rows);
-      if (farthest < half - pixel && u0 == cell_at(centre_T.x() + pixel, printed.cells.cols) &&
-          v0 == cell_at(centre_T.y() + pixel, printed.cells.rows)) {
+      const int u0 = cell_at(p_TX.x() - pixel, printed.cells.cols), v0 = cell_at(p_TX.y() - pixel, printed.cells.rows);
+      if (farthest < half - pixel && u0 == cell_at(p_TX.x() + pixel, printed.cells.cols) &&
+          v0 == cell_at(p_TX.y() + pixel, printed.cells.rows)) {
         picture.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(value(u0, v0));
         continue;
       }
