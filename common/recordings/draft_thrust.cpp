@@ -93,6 +93,7 @@ ThrustDraft thrust_of(const Columns& all, const std::vector<Commanded>& actuator
   ThrustDraft draft = inputs_of(all, actuators);
   if (draft.lines.empty()) draft.lines = pulses_of(all);
   if (draft.lines.empty()) draft.lines = forces_of(all);
+  if (!draft.lines.empty()) draft.remark.clear();  // something else drives it
   return draft;
 }
 

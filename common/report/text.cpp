@@ -88,10 +88,10 @@ std::string percent_interval(double low, double high) {
 std::string how_far(const Foretold& foretold) {
   if (foretold.cut == 0) return "";
   return "In " + std::to_string(foretold.cut) + " of " + std::to_string(foretold.windows) +
-         " predictions a small change of the start grows fivefold, within " + number(foretold.typical, 2) +
-         " s mostly: errors count so far only, for nobody can foretell more of such a motion from where it was "
-         "measured "
-         "to begin.";
+         " predictions a small change of the start grows fivefold by the models, within " +
+         number(foretold.typical, 2) +
+         " s mostly: errors count so far only, for nobody can foretell more of such a motion from where it was measured"
+         " to begin.";
 }
 
 std::string five_seconds_ahead(const Foretold& foretold) {

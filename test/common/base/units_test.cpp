@@ -38,6 +38,8 @@ TEST_CASE("units: an angle is its own dimension only where an angle or its rate 
   CHECK(unit_factor("deg", "rad") == doctest::Approx(std::numbers::pi / 180.0).epsilon(kRounding));
   CHECK(unit_factor("deg/s", "rad/s") == doctest::Approx(std::numbers::pi / 180.0).epsilon(kRounding));
   CHECK(unit_factor("rpm", "rad/s") == doctest::Approx(std::numbers::pi / 30.0).epsilon(kRounding));
+  CHECK(unit_factor("rev/s", "rad/s") == doctest::Approx(2.0 * std::numbers::pi).epsilon(kRounding));
+  CHECK(unit_factor("rps", "rad/s") == unit_factor("rev/s", "rad/s"));
   CHECK(unit_factor("N m s", "N m/(rad/s)") == 1.0);
   CHECK(unit_factor("N m/(deg/s)", "N m/(rad/s)") == doctest::Approx(180.0 / std::numbers::pi).epsilon(kRounding));
   CHECK_THROWS_AS(static_cast<void>(unit_factor("m", "rad")), InputError);

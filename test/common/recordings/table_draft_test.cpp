@@ -123,6 +123,14 @@ TEST_CASE("table draft: columns that are called as the vehicle's actuators are c
   // What is left is a map that runs.
   CHECK(tables::ColumnMap::parse(draft("u,delta", "1,20", ship), "draft.yaml").dvl.has_value());
   CHECK(holds(draft("u,delta", "1,20", ship), "# thrusters, inputs: a column for propeller is to be found"));
+  // Pulses of thrusters with the same names are pulses, and nothing is missing.
+  const std::vector<recordings::Commanded> pushed{{"thr_1", By::kOther}, {"thr_2", By::kOther}};
+  std::string pulses = "t,u,thr_1,thr_2\n";
+  for (int k = 0; k < 4; ++k)
+    pulses += std::to_string(k) + ",1," + std::to_string(1500 + k) + "," + std::to_string(1490 - k) + "\n";
+  const std::string drafted_pulses = recordings::describe_table(tables::parse_csv(pulses, "run.csv"), pushed);
+  CHECK(holds(drafted_pulses, "pwm: {columns: [thr_1, thr_2], unit: us}"));
+  CHECK(!holds(drafted_pulses, "is to be found"));
   const std::vector<recordings::Commanded> twin{{"port", By::kShaftSpeed}, {"starboard", By::kShaftSpeed}};
   CHECK(holds(draft("u,n_starboard,n_port", "1,2,3", twin),
               "inputs: {columns: [n_port, n_starboard], units: [rpm, rpm]}"));

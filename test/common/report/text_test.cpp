@@ -61,7 +61,8 @@ TEST_CASE("text: log odds that are even but for rounding are 0") {
 TEST_CASE("text: errors say how far a motion can be foretold, where that is less than asked") {
   CHECK(how_far({40, 0, 0.0}).empty());
   CHECK(how_far({40, 30, 1.48})
-            .starts_with("In 30 of 40 predictions a small change of the start grows fivefold, within 1.5 s"));
+            .starts_with(
+                "In 30 of 40 predictions a small change of the start grows fivefold by the models, within 1.5 s"));
   CHECK(five_seconds_ahead({40, 0, 0.0}) == "5 s ahead");
   CHECK(five_seconds_ahead({40, 5, 2.0}) == "5 s ahead");
   CHECK(five_seconds_ahead({40, 30, 7.0}) == "5 s ahead");
