@@ -2,13 +2,13 @@
 
 #include <doctest/doctest.h>
 
-#include <filesystem>
-#include <fstream>
+#include <string>
 
 #include "common/base/error.hpp"
 #include "common/model/learned/learned_file.hpp"
 #include "common/report/json.hpp"
 #include "common/report/table.hpp"
+#include "test/support/scratch.hpp"
 
 using namespace fathom;
 
@@ -35,12 +35,11 @@ DiagnosisResult diagnosed() {
   return result;
 }
 
+/// A file of its own for every case: they run side by side.
 struct Written {
-  explicit Written(const std::string& text) : path{std::filesystem::temp_directory_path() / "fathom_correction.json"} {
-    std::ofstream{path} << text;
-  }
-  ~Written() { std::filesystem::remove(path); }
-  std::filesystem::path path;
+  explicit Written(const std::string& text) { test::write_bytes(path, text); }
+  test::Scratch folder;
+  std::string path{folder.path("correction.json")};
 };
 
 }  // namespace
@@ -49,7 +48,7 @@ TEST_CASE("correction: what result.json holds is read back as the same force, wi
   const model::Vehicle vehicle =
       model::Vehicle::load(std::string(FATHOM_SOURCE_DIR) + "/config/vehicles/bluerov2.yaml");
   const Written file{report::to_json(diagnosed())};
-  const model::LearnedModel read = model::read_learned(file.path.string(), vehicle);
+  const model::LearnedModel read = model::read_learned(file.path, vehicle);
   REQUIRE(read.parameters.size() == 1);
   CHECK(read.parameters[0] == std::pair<std::string, double>{"m_X", 21.5});
   REQUIRE(read.force != nullptr);
@@ -76,7 +75,7 @@ TEST_CASE("correction: a pull is read back with its point, zeros and all, and it
   std::string text = report::to_json(result);
   {
     const Written file{text};
-    const model::LearnedModel read = model::read_learned(file.path.string(), vehicle);
+    const model::LearnedModel read = model::read_learned(file.path, vehicle);
     REQUIRE(read.force != nullptr);
     REQUIRE(read.force->force().features.size() == 1);
     CHECK(read.force->force().features[0].pulls());
@@ -86,7 +85,7 @@ TEST_CASE("correction: a pull is read back with its point, zeros and all, and it
   const std::size_t at = text.find("\"c\":", text.find("\"stretch\""));
   REQUIRE(at != std::string::npos);
   const Written damaged{text.replace(at, 4, "\"z\":")};
-  CHECK_THROWS_WITH_AS((void)model::read_learned(damaged.path.string(), vehicle), doctest::Contains("'c'"), InputError);
+  CHECK_THROWS_WITH_AS((void)model::read_learned(damaged.path, vehicle), doctest::Contains("'c'"), InputError);
 }
 
 TEST_CASE("correction: a file of another vehicle, or no result at all, is refused with its line") {
@@ -95,13 +94,13 @@ TEST_CASE("correction: a file of another vehicle, or no result at all, is refuse
   DiagnosisResult other = diagnosed();
   other.vehicle = "Hydrone";
   const Written foreign{report::to_json(other)};
-  CHECK_THROWS_WITH_AS((void)model::read_learned(foreign.path.string(), vehicle),
+  CHECK_THROWS_WITH_AS((void)model::read_learned(foreign.path, vehicle),
                        doctest::Contains("this is a model of Hydrone"), InputError);
   DiagnosisResult short_of_thrusters = diagnosed();
   short_of_thrusters.correction->visited_force.pop_back();
   const Written five{report::to_json(short_of_thrusters)};
-  CHECK_THROWS_WITH_AS((void)model::read_learned(five.path.string(), vehicle),
-                       doctest::Contains("learned with 5 thrusters"), InputError);
+  CHECK_THROWS_WITH_AS((void)model::read_learned(five.path, vehicle), doctest::Contains("learned with 5 thrusters"),
+                       InputError);
 }
 
 TEST_CASE("correction: it stands apart from causes, and a refused one says why") {
