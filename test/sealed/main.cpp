@@ -10,10 +10,10 @@
 #include <thread>
 
 #include "common/base/progress_line.hpp"
-#include "test/sealed/learning.hpp"
-#include "test/sealed/page.hpp"
-#include "test/sealed/tool.hpp"
-#include "test/sealed/writing.hpp"
+#include "test/sealed/dives/writing.hpp"
+#include "test/sealed/judging/learning.hpp"
+#include "test/sealed/judging/page.hpp"
+#include "test/sealed/judging/tool.hpp"
 
 namespace fathom::sealed {
 namespace {

@@ -6,8 +6,8 @@
 #include "common/tables/column_map.hpp"
 #include "common/tables/csv.hpp"
 #include "common/tables/import.hpp"
-#include "test/sealed/other_writing.hpp"
-#include "test/sealed/writing.hpp"
+#include "test/sealed/dives/other_writing.hpp"
+#include "test/sealed/dives/writing.hpp"
 #include "test/support/scratch.hpp"
 
 namespace fathom {

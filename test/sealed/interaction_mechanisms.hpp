@@ -1,8 +1,0 @@
-// What thrusters do to the hull, and the surface to them.
-#pragma once
-
-#include "test/sealed/mechanism.hpp"
-
-namespace fathom::sealed {
-[[nodiscard]] std::vector<Entry> interaction_mechanisms();
-}

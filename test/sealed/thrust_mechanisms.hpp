@@ -1,8 +1,0 @@
-// Between the thrust that was asked for and the thrust that the water feels.
-#pragma once
-
-#include "test/sealed/mechanism.hpp"
-
-namespace fathom::sealed {
-[[nodiscard]] std::vector<Entry> thrust_mechanisms();
-}

@@ -1,8 +1,0 @@
-// What the water does to the hull beyond diagonal added mass and drag.
-#pragma once
-
-#include "test/sealed/mechanism.hpp"
-
-namespace fathom::sealed {
-[[nodiscard]] std::vector<Entry> water_mechanisms();
-}
