@@ -133,7 +133,7 @@ model::ActiveEffect Searching::effect_of(std::size_t law, const std::vector<doub
 std::vector<Proposal> Searching::proposals(const Fitted& from, double least, bool with_pairs) {
   std::vector<Proposal> proposals;
   promised_.clear();
-  behind_.clear();
+  unasked_.clear();
   const auto take = [&](const Scan& scan, const likelihood::Noise& noise) {
     const double best = scan.promises.empty() ? 0.0 : scan.promises.front().score;
     int singles = 0;
@@ -142,11 +142,11 @@ std::vector<Proposal> Searching::proposals(const Fitted& from, double least, boo
       note(promise);
       const bool first = asked_first(laws_[promise.law]);
       if (promise.score < least || of_name[laws_[promise.law].name]++ > 0) continue;  // the best form of each
-      if (!first && promise.score < kFarBehind * best) {
-        behind_.emplace_back(promise.score, Proposal{{effect_of(promise.law, promise.theta)}, noise, false, {}});
+      const bool far = promise.score < kFarBehind * best;
+      if (!first && (far || singles++ >= (sought_ ? 1 : thresholds_.fits_per_round))) {
+        unasked_.push_back({promise.score, far, {{effect_of(promise.law, promise.theta)}, noise, false, {}}});
         continue;
       }
-      if (!first && singles++ >= (sought_ ? 1 : thresholds_.fits_per_round)) continue;
       proposals.push_back({{effect_of(promise.law, promise.theta)}, noise, first, {}});
       for (const std::vector<double>& theta : sought_ ? std::vector<std::vector<double>>{} : promise.also)
         proposals.back().also.push_back(effect_of(promise.law, theta));
@@ -232,21 +232,25 @@ bool Searching::add_some() {
   std::vector<Fitted> fits = models_.race(starts(from, all), {.from = found_.best.score});
   double gained = 0.0;
   for (const Fitted& fitted : fits) gained = std::max(gained, fitted.score - found_.best.score);
-  for (Fitted& fitted : models_.race(starts(from, hidden(all, gained)), {.from = found_.best.score}))
-    fits.push_back(std::move(fitted));
+  const Odds beaten{.from = found_.best.score, .to_beat = found_.best.score + gained};
+  for (Fitted& fitted : models_.race(starts(from, hidden(all, gained)), beaten)) fits.push_back(std::move(fitted));
   return take_best(std::move(fits));
 }
 
 std::vector<Proposal> Searching::hidden(const std::vector<Proposal>& asked, double gained) const {
-  std::vector<std::pair<double, Proposal>> order = behind_;
-  std::ranges::stable_sort(order, std::greater{}, &std::pair<double, Proposal>::first);
+  std::vector<Unasked> order = unasked_;
+  std::ranges::stable_sort(order, std::greater{}, &Unasked::promised);
   std::vector<Proposal> found;
-  for (auto& [promised, proposal] : order) {
+  int far = 0;
+  for (Unasked& one : order) {
     const auto same = [&](const Proposal& other) {
-      return other.added.size() == 1 && other.added.front().effect == proposal.added.front().effect;
+      return other.added.size() == 1 && other.added.front().effect == one.proposal.added.front().effect;
     };
-    if (promised < kFarBehind * gained || found.size() == static_cast<std::size_t>(thresholds_.fits_per_round)) break;
-    if (std::ranges::none_of(asked, same) && std::ranges::none_of(found, same)) found.push_back(std::move(proposal));
+    if (one.promised < gained &&
+        (!one.far || one.promised < kFarBehind * gained || far++ >= thresholds_.fits_per_round))
+      continue;
+    if (std::ranges::none_of(asked, same) && std::ranges::none_of(found, same))
+      found.push_back(std::move(one.proposal));
   }
   return found;
 }

@@ -18,6 +18,13 @@ struct Proposal {
   std::vector<model::ActiveEffect> also{};  ///< in place of the one that is added, other numbers to begin from
 };
 
+/// What a look has passed over, for others promised more.
+struct Unasked {
+  double promised{};  ///< nats
+  bool far{};         ///< too little beside the best promise
+  Proposal proposal;
+};
+
 /// What is known of these runs before they are searched: where fits of the base model and of sets of effects begin.
 struct Before {
   Start base;
@@ -68,8 +75,9 @@ class Searching {
   /// Takes the best of these where it is a name's worth better; else false.
   bool take_best(std::vector<Fitted> fits);
   bool add_some();
-  /// Of the last look, what promised so much less than the best that it was not asked, though by what those that were
-  /// asked have really gained it should have been: a promise that is not kept hides nothing. One form of each name.
+  /// Of the last look, what was not asked, though by what those that were asked have really gained it should have been:
+  /// a promise that is not kept hides nothing. All that promised more than that, and the first of what promised little
+  /// beside the best promise and enough beside the gain. One form of each name.
   [[nodiscard]] std::vector<Proposal> hidden(const std::vector<Proposal>& asked, double gained) const;
   static bool held(const std::vector<model::ActiveEffect>& effects, const model::ActiveEffect& active);
   /// Every effect that the best model does not hold yet has the smallest practical size and numbers of its own; else
@@ -133,8 +141,8 @@ class Searching {
   std::map<std::string, Promise> noted_;
   std::map<std::string, double> beside_;     // what each name promised beside the best model, as it was last looked at
   std::map<std::size_t, Promise> promised_;  // by law, in the last look
-  std::vector<std::pair<double, Proposal>> behind_;  // promised, in the last look: too little beside the best
-  std::map<std::string, Refusal> failed_;            // what evidence alone would have named
+  std::vector<Unasked> unasked_;             // in the last look
+  std::map<std::string, Refusal> failed_;    // what evidence alone would have named
   std::set<std::pair<std::vector<std::string>, std::string>> given_up_;  // names that stayed, and the one that went
   std::map<std::string, Refusal> gave_way_;                              // to a free force in its place
   std::map<std::string, double> in_place_;                               // nats by which a name is worth more than that

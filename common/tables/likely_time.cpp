@@ -9,9 +9,11 @@
 namespace fathom::tables {
 namespace {
 
-/// The unit in which the rows of a column lie as far apart as those of a recording do; null where it does not rise.
+/// The unit in which a column counts from 1970, or in which its rows lie as far apart as those of a recording do; null
+/// where it does not rise.
 const char* likely_unit(const Paged<double>& column) {
-  constexpr double kLongest = 2.0;  // s between rows
+  constexpr double kLongest = 2.0, kLongestDated = 60.0;      // s between rows
+  constexpr double kEarliestEpoch = 1e9, kLatestEpoch = 4e9;  // s since 1970, from 2001 to 2096
   std::vector<double> steps;
   for (std::size_t i = 1; i < std::min<std::size_t>(column.size(), 1000); ++i) {
     if (column[i] > column[i - 1]) steps.push_back(column[i] - column[i - 1]);
@@ -19,12 +21,16 @@ const char* likely_unit(const Paged<double>& column) {
   if (steps.empty()) return nullptr;
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::ranges::nth_element(steps, middle);
+  const auto first = std::ranges::find_if(column, [](double t) { return std::isfinite(t); });
+  const char* by_step = nullptr;
   double factor = 1.0;
   for (const char* unit : {"s", "ms", "us", "ns"}) {
-    if (factor * *middle <= kLongest) return unit;
+    const double since_1970 = factor * *first;
+    if (since_1970 >= kEarliestEpoch && since_1970 <= kLatestEpoch && factor * *middle <= kLongestDated) return unit;
+    if (by_step == nullptr && factor * *middle <= kLongest) by_step = unit;
     factor *= 1e-3;
   }
-  return nullptr;
+  return by_step;
 }
 
 bool is_named_so(const std::string& name) {

@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kMaxSeconds = 9e9;      // beyond, a double no longer resolves a microsecond
 constexpr double kGapPeriods = 5.0;      // a step of this many median periods is reported as a gap
-constexpr double kSlowestStep = 2.0;     // s between rows: slower, hardly any vehicle's motion is seen
+constexpr double kSlowestStep = 2.0;     // s between rows: slower, a finer unit is likelier than so slow a recorder
+constexpr double kSlowestMotion = 60.0;  // s between rows: slower, no vehicle's motion is seen
 constexpr double kDay = 86400.0;         // s
 constexpr double kClocksDiffer = 0.005;  // of the rate: no crystal is off so far
 constexpr double kFewestSteps = 20.0;    // of a clock that may be written in whole seconds
@@ -44,8 +45,10 @@ std::string written(const Column& column, const char* unit) {
 }
 
 /// Refuses rows too far apart to be seconds, before anything is laid on a grid that long.
-void check_step(const CsvTable& table, const Column& column, double factor, double median_step) {
-  if (median_step <= kSlowestStep) return;
+/// `dated`: by their size or as dates, they can be nothing else than they are said to be (a glider writes its flight
+/// every four seconds).
+void check_step(const CsvTable& table, const Column& column, double factor, bool dated, double median_step) {
+  if (median_step <= (dated ? kSlowestMotion : kSlowestStep)) return;
   std::string remedy = "is its unit right?";
   for (const auto& [unit, finer] : kFinerUnits) {
     if (factor != 1.0 || finer * median_step > kSlowestStep) continue;
@@ -128,6 +131,13 @@ class TimeColumn {
       clock_only_ = clock_only_ && cells == Cells::kTimesOfDay;
       dates_ = dates_ || cells == Cells::kDates;
     }
+    for (std::size_t row = 0; row < table.rows() && !dates_; ++row) {
+      const double first_time = seconds(row);
+      if (!std::isfinite(first_time)) continue;
+      dated_ = first_time >= kEarliestEpoch && first_time <= kLatestEpoch;
+      break;
+    }
+    dated_ = dated_ || dates_;
     if (dates_ && table.zoneless_dates) notes.emplace_back("time: dates without a zone are taken as UTC");
   }
 
@@ -138,6 +148,8 @@ class TimeColumn {
   }
   [[nodiscard]] const Column& first() const { return columns_.front(); }
   [[nodiscard]] double factor() const { return factors_.front(); }
+  /// Seconds since 1970, whatever they were written as.
+  [[nodiscard]] bool dated() const { return dated_; }
   /// Nothing but times of day: past midnight they begin again.
   [[nodiscard]] bool begins_again() const { return clock_only_; }
   [[nodiscard]] bool is(const std::string& name) const {
@@ -162,7 +174,7 @@ class TimeColumn {
   std::vector<Column> columns_;
   std::vector<double> factors_;
   std::vector<ColumnData> data_;
-  bool clock_only_{true}, dates_{false};
+  bool clock_only_{true}, dates_{false}, dated_{false};
 };
 
 /// Another column that is a clock by its cells or its name, and does not go as fast: a nominal counter is no time.
@@ -251,7 +263,7 @@ Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnMap& map, s
   }
   const double typical = report_longest_gap(rows.utime, notes);
   if (time.first().name == kOwnTime) return rows;  // a topic's own time is known to be one
-  check_step(table, time.first(), time.factor(), typical);
+  check_step(table, time.first(), time.factor(), time.dated(), typical);
   compare_clocks(table, time, rows, notes);
   return rows;
 }

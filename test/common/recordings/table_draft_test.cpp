@@ -97,7 +97,7 @@ TEST_CASE("table draft: date and time of day in two columns, wind, units at the 
 
 TEST_CASE("table draft: a Slocum's own names") {
   std::string text = "m_present_time,m_depth,m_pitch,m_roll,m_heading,m_ballast_pumped,m_battpos\n";
-  for (int k = 0; k < 10; ++k) text += std::to_string(1700000000 + k) + ",10,0.4,0,1,-230,0.5\n";
+  for (int k = 0; k < 10; ++k) text += std::to_string(1700000000 + 4 * k) + ",10,0.4,0,1,-230,0.5\n";
   std::string draft;
   const Recording run = drafted(text, draft, kAll).recording;
   CAPTURE(draft);

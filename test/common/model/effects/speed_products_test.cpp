@@ -299,21 +299,37 @@ TEST_CASE("wind: pushes with the square of the wind past the craft, and still ai
   motion.vehicle = &vehicle;
   constexpr double kPressure = 0.5 * 1.23 * 2.0;  // kg/m: times speed squared
   // From astern at 5 m/s on a craft at rest, then on one that runs before it at 1 m/s.
-  CHECK(wrench_of("wind", {5.0, 0.0, 0.4}, 0, motion)[0] ==
+  CHECK(wrench_of("wind", {5.0, 0.0, 0.4, 0.0}, 0, motion)[0] ==
         doctest::Approx(0.6 * kPressure * 25.0).epsilon(kProductRounding));
   motion.nu[0] = 1.0;
-  CHECK(wrench_of("wind", {5.0, 0.0, 0.4}, 0, motion)[0] ==
+  CHECK(wrench_of("wind", {5.0, 0.0, 0.4, 0.0}, 0, motion)[0] ==
         doctest::Approx(0.6 * kPressure * (16.0 + 1.0)).epsilon(kProductRounding));
   motion.nu.setZero();
-  const Vector6d abeam = wrench_of("wind", {0.0, 4.0, 0.4}, 0, motion);
+  const Vector6d abeam = wrench_of("wind", {0.0, 4.0, 0.4, 0.0}, 0, motion);
   CHECK(abeam[1] == doctest::Approx(0.9 * kPressure * 16.0).epsilon(kProductRounding));
   CHECK(abeam[5] == doctest::Approx(0.4 * abeam[1]).epsilon(kProductRounding));
   // Nothing stands above the water of a craft whose file does not say so.
   vehicle.dof = {true, true, false, false, false, true};
   model::Scene scene{.vehicle = &vehicle, .attitude = true, .velocity = true};
-  CHECK(model::find_effect("wind")->variants(scene).size() == 1);
+  CHECK(model::find_effect("wind")->variants(scene) == std::vector<std::string>{"alike from all sides", "-"});
+  vehicle.hull = {10.0, 2.0, 1.0};
+  CHECK(model::find_effect("wind")->variants(scene) ==
+        std::vector<std::string>{"alike from all sides", "the hull's side"});
   vehicle.windage = 0.0;
   CHECK(model::find_effect("wind")->variants(scene).empty());
+}
+
+TEST_CASE("wind: a hull's side takes less of it from ahead, and its centre of pressure goes toward the end blown on") {
+  model::Vehicle vehicle;
+  vehicle.windage = 2.0;
+  vehicle.hull = {10.0, 2.0, 1.0};
+  model::Motion motion;
+  motion.vehicle = &vehicle;
+  const std::vector<double> from_astern{5.0, 0.0, 0.0, 1.5}, quartering{3.0, 4.0, 0.0, 1.5};
+  CHECK(wrench_of("wind", from_astern, 1, motion)[0] ==
+        doctest::Approx(0.2 * wrench_of("wind", from_astern, 0, motion)[0]).epsilon(kProductRounding));
+  const Vector6d pushed = wrench_of("wind", quartering, 1, motion);
+  CHECK(pushed[5] == doctest::Approx(1.5 * 0.6 * pushed[1]).epsilon(kProductRounding));
 }
 
 }  // namespace fathom
