@@ -60,6 +60,8 @@ std::string_view word(Cause cause) {
       return "sensors_undecided";
     case Cause::kBeginsUnseen:
       return "begins_unseen";
+    case Cause::kNamesMislead:
+      return "names_mislead";
     case Cause::kScoresDisagree:
       return "scores_disagree";
   }

@@ -37,6 +37,7 @@ enum class Cause {
   kSensorsDisagree,   ///< log odds that a sensor's number is wrong, by comparing the sensors
   kSensorsUndecided,  ///< log odds between two sensors of which one is wrong: too few to tell which
   kBeginsUnseen,      ///< s into a run that judges, from which on far more is left than in the fitted ones
+  kNamesMislead,      ///< share by which the error on runs that judge falls with the names: surely below zero
   kScoresDisagree     ///< share by which the open-loop error falls with the numbers of the multi-horizon score
 };
 

@@ -20,6 +20,8 @@ constexpr std::array kWords{
     CauseWords{"not_finite", "", "The filter diverged"},
     CauseWords{"scores_disagree", "fraction of the open-loop error",
                "Numbers fitted one step ahead and many ahead disagree"},
+    CauseWords{"names_mislead", "fraction of the error",
+               "With the names that fit best, runs that judge are foretold worse than without", false},
     CauseWords{"sensors_disagree", "log odds", "A sensor's number is wrong, by comparing the sensors"},
     CauseWords{"sensors_undecided", "log odds", "One of two sensors is wrong, and nothing tells which", false},
     CauseWords{"begins_unseen", "s", "Something begins in a run that judges, where no fit has seen it"},

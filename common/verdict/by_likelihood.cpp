@@ -93,6 +93,12 @@ class Diagnosing {
       conclusion_.reasons.clear();
       inference::conclude(problem_, settings_.thresholds, conclusion_);
     }
+    if (conclusion_.reported.finite && !conclusion_.found.best.names.empty())
+      names_help_ = held_back(judges_, conclusion_);
+    if (names_claim(conclusion_.verdict) && harms(names_help_)) {
+      conclusion_.reasons.push_back({inference::Cause::kNamesMislead, names_help_.value, 0.0, ""});
+      conclusion_.verdict = Verdict::unexplained;
+    }
     wiring_sought_ = conclusion_.verdict == Verdict::unexplained || conclusion_.verdict == Verdict::no_model;
     if (wiring_sought_) seek_wiring(vehicle_, train_, result(), conclusion_);
   }
@@ -110,11 +116,7 @@ class Diagnosing {
 
   /// The model that is told. Stand-ins stay where they help.
   void choose() {
-    const Interval gain =
-        conclusion_.reported.finite && !conclusion_.found.best.names.empty() && !names_claim(conclusion_.verdict)
-            ? held_back(judges_, conclusion_)
-            : Interval{kNotAsked, kNotAsked, kNotAsked};
-    with_names_ = names_claim(conclusion_.verdict) || helps(gain);
+    with_names_ = names_claim(conclusion_.verdict) || helps(names_help_);
     force_ = force_for(learned_, judges_);
     if (force_ != nullptr && conclusion_.reported.finite && !judges_.here) refuse_what_harms();
     with_names_ = with_names_ || force_ != nullptr;
@@ -232,6 +234,7 @@ class Diagnosing {
   Answer answer_;
   const model::LearnedForce* force_{};  ///< what is told of it to runs that judge
   const likelihood::Fit *named_{}, *best_{};
+  Interval names_help_{kNotAsked, kNotAsked, kNotAsked};  // on runs that judge
   bool wiring_sought_{}, with_names_{};
 };
 

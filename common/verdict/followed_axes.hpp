@@ -10,7 +10,8 @@
 namespace fathom::verdict {
 
 /// 0..5: axes on which thrust acts, and of which the model, with its names or without, foretells more of runs that no
-/// fit has seen than that nothing changes, and not surely less than an equation of that axis alone. `input_step` [s]: between inputs.
+/// fit has seen than that nothing changes, and not surely less than an equation of that axis alone. `input_step` [s]:
+/// between inputs.
 [[nodiscard]] std::vector<int> skilled_axes(const model::Vehicle& vehicle, std::span<const Trial> train,
                                             std::span<const Trial> unseen, double input_step,
                                             const inference::Conclusion& conclusion);

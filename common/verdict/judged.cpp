@@ -56,6 +56,8 @@ const model::LearnedForce* force_for(const learning::Learned& learned, const Jud
 
 bool helps(const Interval& gain) { return gain.low > 0.0 || (std::isinf(gain.low) && gain.value > kEvident); }
 
+bool harms(const Interval& gain) { return helps({-gain.value, -gain.high, -gain.low}); }
+
 Interval held_back(const Judges& judges, const Conclusion& conclusion) {
   const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, judges.input_step);
   const model::Model after = likelihood::model_of(conclusion.reported.hypothesis, judges.input_step);

@@ -33,6 +33,9 @@ struct Judges {
 /// Surely, or where too few windows tell how sure that is, by much.
 [[nodiscard]] bool helps(const Interval& gain);
 
+/// The same of an error that rises.
+[[nodiscard]] bool harms(const Interval& gain);
+
 /// By how much the open-loop error falls with the names on the runs that judge; NaN where these have no window.
 [[nodiscard]] Interval held_back(const Judges& judges, const inference::Conclusion& conclusion);
 

@@ -85,6 +85,12 @@ std::string unexplained(const Conclusion& conclusion) {
         "likelier than all of them. ",
         many->value);
   }
+  if (const Reason* misled = reason(conclusion, Cause::kNamesMislead)) {
+    sentence += text(
+        "What fits best here foretells the runs that judge worse than the model without it does, by %.0f %%: it stands "
+        "in for something else, or it was otherwise there. ",
+        -100.0 * misled->value);
+  }
   if (const Reason* event = reason(conclusion, Cause::kBeginsUnseen)) {
     sentence += text("Something begins near %.3g s of %s, which judges: no fit has seen it, and it is not explained. ",
                      event->value, event->of.c_str());

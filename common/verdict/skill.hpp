@@ -13,14 +13,16 @@ namespace fathom::verdict {
 
 constexpr std::size_t kFiveSeconds = 1;  ///< place among residual::kHorizons: the horizon at which models are judged
 
-/// nu_dot = input tau + linear nu + quadratic |nu| nu + constant, of one axis by itself.
+/// nu_dot = input tau + linear nu + quadratic |nu| nu + constant + tilt d, of one axis by itself; d of roll -cos(theta)
+/// sin(phi), of pitch -sin(theta): what rights a craft, without which a trim that holds it would seem to push backward.
 struct PlainAxis {
-  double input{}, linear{}, quadratic{}, constant{};  ///< SI; input: m/s^2 per N, rad/s^2 per N m
+  double input{}, linear{}, quadratic{}, constant{}, tilt{};  ///< SI; input: m/s^2 per N, rad/s^2 per N m
   double t_of_input{};  ///< Student's t of `input`: between -3 and 3 or so the input does not act
   bool known{};
 };
 
-/// Least squares on accelerations over a quarter of a second, per simulated axis.
+/// Least squares on accelerations over a quarter of a second, or from one measurement to the next where they are
+/// farther apart, per simulated axis.
 [[nodiscard]] std::array<PlainAxis, 6> plain_fit(const model::Vehicle& vehicle, std::span<const Trial> trials);
 
 /// Errors over prediction windows where nothing changes, and by the plain fit.
