@@ -41,8 +41,7 @@ Screen screen(const likelihood::Problem& problem, const Seen& seen, const likeli
   const Eigen::MatrixXd X = sums.with_numbers;
   screen.gram = sums.gram.selfadjointView<Eigen::Lower>();
   screen.gram -= X.transpose() * (seen.covariance * X);
-  screen.gradient = sums.gradient;
-  if (seen.step.size() > 0) screen.gradient -= X.transpose() * seen.step;  // the numbers move along
+  screen.gradient = sums.gradient - X.transpose() * seen.step;  // the numbers move along
   return screen;
 }
 

@@ -130,6 +130,7 @@ class Scanner {
           },
           sums);
     }
+    sums.gradient -= sums.with_numbers.transpose() * seen_.step;  // the model's own numbers move along
     return sums;
   }
 

@@ -11,10 +11,38 @@ namespace fathom::inference {
 
 using likelihood::NumberKind;
 
+namespace {
+
+/// Slope of the objective by the numbers where it was fitted, 0 of those that it presses against a limit.
+Eigen::VectorXd slope_within(const Seen& seen, std::vector<Eigen::Index>& free) {
+  const Eigen::Index p = seen.fit.information.rows();
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(p);
+  for (const likelihood::RunReference& run : seen.reference)
+    slope.noalias() -= run.J.transpose() * Eigen::VectorXd{run.slope.reshaped()};
+  for (Eigen::Index j = 0; j < p; ++j) {
+    const likelihood::Number& number = seen.fit.numbers[static_cast<std::size_t>(j)];
+    const double x = value(seen.fit.hypothesis, number);
+    slope[j] -= (x - number.mean) * likelihood::prior_weight(number, x);
+    if ((x <= number.low && slope[j] < 0.0) || (x >= number.high && slope[j] > 0.0))
+      slope[j] = 0.0;
+    else
+      free.push_back(j);
+  }
+  return slope;
+}
+
+}  // namespace
+
 Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
   Seen seen{.fit = std::move(fit)};
   likelihood::refer(problem, seen.fit, seen.reference, threads);
-  seen.covariance = inverse_symmetric(seen.fit.information);
+  // What is pressed against a limit makes room for nothing: of a craft that never reverses, the share of drag that goes
+  // with |u| would promise without end to do what X_u, held at zero, may not.
+  std::vector<Eigen::Index> free;
+  const Eigen::VectorXd slope = slope_within(seen, free);
+  seen.covariance = Eigen::MatrixXd::Zero(slope.size(), slope.size());
+  seen.covariance(free, free) = inverse_symmetric(Eigen::MatrixXd{seen.fit.information(free, free)});
+  seen.step = seen.covariance * slope;
   Vector6d square = Vector6d::Zero(), moved = Vector6d::Zero();
   double count = 0.0;
   const std::vector<likelihood::Number> none;
@@ -42,20 +70,6 @@ Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
   }
   if (count > 0.0) seen.applied = (square / count).cwiseSqrt();
   return seen;
-}
-
-void take_step(Seen& seen) {
-  const Eigen::Index p = seen.fit.information.rows();
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(p);
-  for (const likelihood::RunReference& run : seen.reference)
-    slope.noalias() -= run.J.transpose() * Eigen::VectorXd{run.slope.reshaped()};
-  for (Eigen::Index j = 0; j < p; ++j) {
-    const likelihood::Number& number = seen.fit.numbers[static_cast<std::size_t>(j)];
-    const double x = value(seen.fit.hypothesis, number);
-    slope[j] -= (x - number.mean) * likelihood::prior_weight(number, x);
-    if ((x <= number.low && slope[j] < 0.0) || (x >= number.high && slope[j] > 0.0)) slope[j] = 0.0;  // held there
-  }
-  seen.step = seen.covariance * slope;
 }
 
 namespace {

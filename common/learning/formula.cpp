@@ -167,8 +167,7 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
   // there.
   Fit quiet = base;
   quiet.noise = found.fit.noise;
-  inference::Seen seen = inference::see(problem, quiet, threads);
-  inference::take_step(seen);
+  const inference::Seen seen = inference::see(problem, quiet, threads);
   const std::vector<Form> forms = grammar(problem, scene, found);
   if (forms.empty()) return std::nullopt;
   double paid = 0.0;  // by the learned force

@@ -151,8 +151,7 @@ likelihood::Fit tuned(const likelihood::Problem& problem, likelihood::Fit fit, c
   for (int step = 0; step < kSteps; ++step) {
     const Slopes slopes = slopes_of(fit.hypothesis.force, room);
     if (slopes.inner.empty()) break;
-    inference::Seen seen = inference::see(problem, fit, threads);
-    inference::take_step(seen);
+    const inference::Seen seen = inference::see(problem, fit, threads);
     std::vector<std::size_t> groups(slopes.of.size());
     std::iota(groups.begin(), groups.end(), std::size_t{0});
     const inference::Screen screen = inference::screen(problem, seen, slopes.columns, groups, true);

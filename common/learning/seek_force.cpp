@@ -96,11 +96,7 @@ class Seeker {
   }
 
  private:
-  [[nodiscard]] Seen seen(likelihood::Fit fit) const {
-    Seen seen = inference::see(problem_, std::move(fit), threads_);
-    inference::take_step(seen);
-    return seen;
-  }
+  [[nodiscard]] Seen seen(likelihood::Fit fit) const { return inference::see(problem_, std::move(fit), threads_); }
 
   [[nodiscard]] Picked pick(const Seen& seen, bool at_least_one, Clock clock) {
     Picked picked =

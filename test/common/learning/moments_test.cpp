@@ -37,8 +37,7 @@ double moment_in(const model::FreeForce& force, const model::FeatureGroup& group
 
 TEST_CASE("moments: a group's moment is where all of its columns together say, wherever it begins from") {
   const test::LearnedCase bag{{.duration = 100.0, .seed = 4, .force = 0.02, .outside = caught}, false};
-  inference::Seen seen = inference::see(bag.problem, bag.conclusion.found.best.fit, 1);
-  inference::take_step(seen);
+  const inference::Seen seen = inference::see(bag.problem, bag.conclusion.found.best.fit, 1);
   const model::Scene scene = model::scene_of(test::bluerov(), {&bag.trial, 1});
   model::FreeForce library = products_of(bag.problem, seen, scene, Clock::kLasting);
   std::vector<std::size_t> groups;

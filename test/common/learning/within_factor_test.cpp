@@ -60,8 +60,7 @@ TEST_CASE("within factor: a pull is moved to its point from the other side of th
   settings.effects = {{.effect = model::find_effect("tether_tension"), .variant = 0, .theta = theta}};
   const test::LearnedCase dive{settings, false};
   const Room room{dive.problem};
-  inference::Seen seen = inference::see(dive.problem, dive.conclusion.found.best.fit, 2);
-  inference::take_step(seen);
+  const inference::Seen seen = inference::see(dive.problem, dive.conclusion.found.best.fit, 2);
   const model::Scene scene = model::scene_of(test::bluerov(), {&dive.trial, 1});
   model::Feature pull{.axis = model::kPull, .count = 1};
   pull.factors[0] = {.quantity = Quantity::kStretch, .a = -1.0, .b = 1.0, .c = 0.5, .d = 1.0};

@@ -123,6 +123,18 @@ TEST_CASE("propeller_torque: a moment about the propeller's axis by its thrust, 
   CHECK(load.wrench.isApprox((Vector6d() << 0.0, 0.0, 0.0, -0.26, -0.32, 0.0).finished(), kRounding));
 }
 
+TEST_CASE("propeller_torque: of a propeller that loses thrust under way the torque falls by a line of its own") {
+  Fixture fixture;
+  fixture.vehicle.thrusters[0].inflow = 0.4;
+  fixture.motion.nu[0] = 2.0;  // 0.4 sqrt(9) 2 = 2.4 N of 9 N are lost
+  model::Load load;
+  const model::Effect& effect = *model::find_effect("propeller_torque");
+  const int form = fixture.form("propeller_torque", "fore");
+  CHECK(effect.numbers(form) == 2);
+  effect.load(fixture.motion, std::vector{-0.02, -0.01}, form, load);
+  CHECK(load.wrench[3] == doctest::Approx(-0.02 * 6.6 - 0.01 * 2.4).epsilon(kRounding));
+}
+
 TEST_CASE("propeller_torque: where a file states the allocation alone, its columns tell the axes") {
   model::Vehicle beluga = test::vehicle_from_repository("beluga");
   beluga.dof = {true, true, true, false, false, true};
