@@ -200,12 +200,13 @@ std::vector<Fitted> FittedModels::fit_all(const std::vector<Start>& starts) {
   return all;
 }
 
-Standing FittedModels::standing(const Fitted& best, double base, const std::string& name) const {
+Standing FittedModels::standing(const Fitted& best, double base, const std::string& name,
+                                const std::set<std::vector<std::string>>& small) const {
   std::map<std::vector<std::string>, double> of_set;  // the best of each set of names
   for (const Fitted& fitted : fitted_) {
-    // What scores more than the best was refused for its size or for numbers on a limit: it is no model to compare
-    // with.
-    const double score = fitted.score > best.score ? kNever : fitted.score;
+    // What scores more than the best was refused. For numbers on a limit: it is no model to compare with. For its size:
+    // what is too small to matter and explains the same is a rival all the same.
+    const double score = fitted.score > best.score && !small.contains(fitted.names) ? kNever : fitted.score;
     const auto [place, fresh] = of_set.try_emplace(fitted.names, score);
     if (!fresh) place->second = std::max(place->second, score);
   }

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -69,7 +70,9 @@ class FittedModels {
   void expect(double starts) { tell(starts, 0.0); }
 
   [[nodiscard]] std::size_t size() const { return fitted_.size(); }
-  [[nodiscard]] Standing standing(const Fitted& best, double base, const std::string& name) const;
+  /// `small`: sets of names of which one is too small to matter.
+  [[nodiscard]] Standing standing(const Fitted& best, double base, const std::string& name,
+                                  const std::set<std::vector<std::string>>& small) const;
   /// The best of exactly these names, sorted; nothing: none was fitted.
   [[nodiscard]] const Fitted* best_of(const std::vector<std::string>& names) const;
   /// The best of each other set of names whose score is at most `within` below the best's: `most` of them, best first.

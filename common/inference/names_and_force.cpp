@@ -101,7 +101,7 @@ void Searching::judge_effects() {
   for (std::size_t e = 0; e < effects().size(); ++e) {
     found_.size.push_back(size_of(seen, e, models_.best_of(names_without(e))));
     const Standing standing =
-        models_.standing(found_.best, found_.base.score, std::string(effects()[e].effect->name()));
+        models_.standing(found_.best, found_.base.score, std::string(effects()[e].effect->name()), small_);
     found_.probability.push_back(standing.probability);
     const auto in_place = in_place_.find(std::string(effects()[e].effect->name()));
     found_.odds.push_back(in_place != in_place_.end() ? std::min(standing.odds, in_place->second) : standing.odds);
@@ -126,10 +126,11 @@ Refusal Searching::refusal(const std::string& name, double promised) const {
   }
   const double odds = best->fit.finite ? best->score - found_.best.score : -std::numeric_limits<double>::infinity();
   if (const auto gave_way = gave_way_.find(name); gave_way != gave_way_.end()) return gave_way->second;
+  const auto failed = failed_.find(name);
+  if (odds > 0.0 && failed != failed_.end()) return failed->second;
   if (!std::ranges::includes(best->names, found_.best.names))
     return {Rule::kProbability, 1.0 / (1.0 + std::exp(-odds)), thresholds_.name_probability};
   if (odds < thresholds_.name_odds) return {Rule::kOdds, odds, thresholds_.name_odds};
-  const auto failed = failed_.find(name);
   return failed != failed_.end() ? failed->second : Refusal{Rule::kOdds, odds, thresholds_.name_odds};
 }
 

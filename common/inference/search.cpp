@@ -273,6 +273,7 @@ bool Searching::counts(const Fitted& fitted) {
     failed_[std::string(those[e].effect->name())] =
         at_limit ? Refusal{Rule::kBound, fitted.score - found_.best.score, thresholds_.name_odds}
                  : Refusal{Rule::kSize, size, thresholds_.smallest_size};
+    if (!at_limit) small_.insert(fitted.names);
     return false;
   }
   return true;

@@ -139,10 +139,11 @@ class Searching {
   Found found_;
   bool sought_{};  // on stretches already: forms, times and places, and what could stand in another's place
   std::map<std::string, Promise> noted_;
-  std::map<std::string, double> beside_;     // what each name promised beside the best model, as it was last looked at
-  std::map<std::size_t, Promise> promised_;  // by law, in the last look
-  std::vector<Unasked> unasked_;             // in the last look
-  std::map<std::string, Refusal> failed_;    // what evidence alone would have named
+  std::map<std::string, double> beside_;      // what each name promised beside the best model, as it was last looked at
+  std::map<std::size_t, Promise> promised_;   // by law, in the last look
+  std::vector<Unasked> unasked_;              // in the last look
+  std::set<std::vector<std::string>> small_;  // sets of names of which one is too small to matter
+  std::map<std::string, Refusal> failed_;     // what evidence alone would have named
   std::set<std::pair<std::vector<std::string>, std::string>> given_up_;  // names that stayed, and the one that went
   std::map<std::string, Refusal> gave_way_;                              // to a free force in its place
   std::map<std::string, double> in_place_;                               // nats by which a name is worth more than that

@@ -186,6 +186,59 @@ TEST_CASE("scan: what the score test promises is what a full fit gains") {
   CHECK(full.log_evidence - base.log_evidence == doctest::Approx(found.promises.front().score).epsilon(0.15));
 }
 
+TEST_CASE("scan: under another noise promises are those of numbers that have moved to where it wants them") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(
+      vehicle, {.duration = 60.0, .seed = 6, .force = 0.05, .effects = {test::active("current", {0.1, 0.05})}});
+  const likelihood::Problem problem = likelihood::make_problem(vehicle, {&dive.trial, 1});
+  likelihood::Fit quiet =
+      likelihood::fit(problem, likelihood::nominal_hypothesis(problem), likelihood::prior_noise(problem), {});
+  for (likelihood::AxisNoise& axis : quiet.noise) axis.log[likelihood::kForce] -= std::log(5.0);
+  const likelihood::Fit moved =
+      likelihood::fit(problem, quiet.hypothesis, quiet.noise, {.noise_rounds = 1, .steps = 6, .fit_noise = false});
+  const std::vector<Law> laws = catalogue(model::scene_of(vehicle, {&dive.trial, 1}), {});
+  const auto promised = [&](const likelihood::Fit& fit, std::string_view name) {
+    for (const Promise& promise : scan(problem, see(problem, fit, 1), laws, {}, 1).promises)
+      if (laws[promise.law].name == name) return promise.score;
+    return 0.0;
+  };
+  // A payload is what the model's own masses can nearly do.
+  for (const char* name : {"current", "payload_change"}) {
+    CAPTURE(name);
+    const double before = promised(quiet, name), after = promised(moved, name);
+    CHECK(std::abs(before - after) < 0.2 * std::abs(after) + 10.0);
+  }
+}
+
+TEST_CASE("scan: a number that is pressed against its limit makes room for nothing") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  // Something pushes with the speed ahead, more than drag holds back: drag may not.
+  const auto push = [](double, const Vector6d& nu) {
+    Vector6d a = Vector6d::Zero();
+    a[0] = 1.2 * nu[0];
+    return a;
+  };
+  const auto dive = test::fly(vehicle, {.duration = 60.0, .seed = 6, .force = 0.02, .outside = push});
+  const likelihood::Problem problem = likelihood::make_problem(vehicle, {&dive.trial, 1});
+  const likelihood::Fit base =
+      likelihood::fit(problem, likelihood::nominal_hypothesis(problem), likelihood::prior_noise(problem), {});
+  const Seen seen = see(problem, base, 1);
+  bool pressed = false;
+  for (std::size_t j = 0; j < base.numbers.size(); ++j) {
+    const auto at = static_cast<Eigen::Index>(j);
+    CAPTURE(base.numbers[j].name);
+    if (base.numbers[j].name == "X_u") {
+      pressed = true;
+      CHECK(value(base.hypothesis, base.numbers[j]) == base.numbers[j].high);
+      CHECK(seen.covariance.row(at).isZero());
+      CHECK(seen.step[at] == 0.0);
+    } else if (base.numbers[j].name.starts_with("m_")) {
+      CHECK(seen.covariance(at, at) > 0.0);
+    }
+  }
+  CHECK(pressed);
+}
+
 TEST_CASE("search: spikes, heavy tails and a scale that varies give no name") {
   const Conclusion noisy =
       inferred({.duration = 90.0, .seed = 8, .force = 0.03, .sensor_factor = [](double t, std::mt19937& random) {

@@ -57,3 +57,23 @@ TEST_CASE("claims: a listed effect is a cause, and no stand-in") {
   REQUIRE(!result.effects[0].parameters.empty());
   CHECK(result.effects[0].parameters[0].value == doctest::Approx(0.1).epsilon(0.1));  // m/s toward north
 }
+
+TEST_CASE("claims: what foretells the runs that judge worse than the model without it is no cause") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = [&](double north, unsigned seed) {
+    return test::fly(
+        vehicle,
+        {.duration = 90.0, .seed = seed, .force = 0.05, .effects = {test::active("current", {north, 0.5 * north})}});
+  };
+  const auto train = dive(0.1, 4), judge = dive(-0.1, 5);  // the tide has turned
+  const verdict::Answer answer =
+      verdict::diagnose(vehicle, {&train.trial, 1}, {&judge.trial, 1}, {}, {}, {.learn = false});
+  const DiagnosisResult& result = answer.report.result;
+  CHECK(result.verdict == "unexplained");
+  CHECK(result.effects.empty());
+  CHECK(std::ranges::any_of(answer.given.causes, [](const CauseGiven& one) { return one.cause == "names_mislead"; }));
+  CHECK_FALSE(result.improvement.high < 0.0);
+  REQUIRE_FALSE(result.stand_ins.empty());
+  CHECK(result.stand_ins[0].name == "current");
+  CHECK_FALSE(result.stand_ins[0].in_model);
+}
