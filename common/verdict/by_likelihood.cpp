@@ -20,6 +20,8 @@ namespace {
 using inference::Conclusion;
 using inference::Verdict;
 
+constexpr std::string_view kNotSurely = "on runs that no fit has seen it does not surely lower the error";
+
 std::vector<std::string> names_of(std::span<const Trial> trials) {
   std::vector<std::string> names;
   for (std::size_t r = 0; r < trials.size(); ++r) {
@@ -95,8 +97,9 @@ class Diagnosing {
     }
     if (conclusion_.reported.finite && !conclusion_.found.best.names.empty())
       names_help_ = held_back(judges_, conclusion_);
-    if (names_claim(conclusion_.verdict) && harms(names_help_)) {
-      conclusion_.reasons.push_back({inference::Cause::kNamesMislead, names_help_.value, 0.0, ""});
+    if (names_claim(conclusion_.verdict) && names_help_.high < -settings_.thresholds.misled) {
+      conclusion_.reasons.push_back(
+          {inference::Cause::kNamesMislead, names_help_.value, -settings_.thresholds.misled, ""});
       conclusion_.verdict = Verdict::unexplained;
     }
     wiring_sought_ = conclusion_.verdict == Verdict::unexplained || conclusion_.verdict == Verdict::no_model;
@@ -116,23 +119,34 @@ class Diagnosing {
 
   /// The model that is told. Stand-ins stay where they help.
   void choose() {
-    with_names_ = names_claim(conclusion_.verdict) || helps(names_help_);
-    force_ = force_for(learned_, judges_);
+    tell(force_for(learned_, judges_));
     if (force_ != nullptr && conclusion_.reported.finite && !judges_.here) refuse_what_harms();
-    with_names_ = with_names_ || force_ != nullptr;
-    named_ = force_ != nullptr ? &learned_.fit : &conclusion_.reported;
+  }
+
+  void tell(const model::LearnedForce* force) {
+    force_ = force;
+    with_names_ = force != nullptr || names_stay();
+    named_ = force != nullptr ? &learned_.fit : &conclusion_.reported;
     best_ = with_names_ ? named_ : &conclusion_.reported_base;
   }
 
+  bool names_stay() const { return names_claim(conclusion_.verdict) || helps(names_help_); }
+
   /// No model is told that errs more, on runs that judge, than the one without what was learned: by more than chance.
+  /// Where axes do not follow their thrust a force may only oppose it, and must surely lower the error.
   void refuse_what_harms() {
-    const likelihood::Fit& without = with_names_ ? conclusion_.reported : conclusion_.reported_base;
-    const double more = raises_error(judges_, likelihood::model_of(without.hypothesis, judges_.input_step),
-                                     learning::as_model(learned_.fit.hypothesis, judges_.input_step, force_));
-    if (1.0 + more <= learning_.limits.judged) return;
-    force_ = nullptr;
-    refuse(learning::too_little("error on runs that judge, over the model's without it", 1.0 + more, "at most",
-                                learning_.limits.judged));
+    const likelihood::Fit& without = names_stay() ? conclusion_.reported : conclusion_.reported_base;
+    const Interval gain = gain_of(judges_, likelihood::model_of(without.hypothesis, judges_.input_step),
+                                  learning::as_model(learned_.fit.hypothesis, judges_.input_step, force_));
+    if (1.0 - gain.value > learning_.limits.judged) {
+      refuse(learning::too_little("error on runs that judge, over the model's without it", 1.0 - gain.value, "at most",
+                                  learning_.limits.judged));
+    } else if (conclusion_.verdict == Verdict::no_model && !(gain.low > 0.0)) {
+      refuse(std::string{kNotSurely});
+    } else {
+      return;
+    }
+    tell(nullptr);
   }
 
   void refuse(const std::string& why) {
@@ -143,9 +157,16 @@ class Diagnosing {
 
   void judge() {
     if (conclusion_.reported.finite) {
-      judge_predictions(judges_, likelihood::model_of(conclusion_.reported_base.hypothesis, judges_.input_step),
-                        learning::as_model(best_->hypothesis, judges_.input_step, force_), answer_.report,
-                        answer_.given, conclusion_);
+      const auto reasons = conclusion_.reasons;
+      const Verdict verdict = conclusion_.verdict;
+      predict();
+      if (force_ != nullptr && conclusion_.verdict == Verdict::no_model && !(result().improvement.low > 0.0)) {
+        refuse(std::string{kNotSurely});
+        conclusion_.reasons = reasons;
+        conclusion_.verdict = verdict;
+        tell(nullptr);
+        predict();
+      }
       if (force_ != nullptr) tell_of_spread(judges_, problem_, learned_, *force_, *result().correction);
     }
     if (conclusion_.verdict == Verdict::no_model) say_why_no_model();
@@ -157,17 +178,19 @@ class Diagnosing {
       answer_.given.causes.push_back({std::string(word(reason.cause)), reason.value, reason.threshold, reason.of});
   }
 
+  void predict() {
+    judge_predictions(judges_, likelihood::model_of(conclusion_.reported_base.hypothesis, judges_.input_step),
+                      learning::as_model(best_->hypothesis, judges_.input_step, force_), answer_.report, answer_.given,
+                      conclusion_);
+  }
+
   void say_why_no_model() {
     if (!wiring_sought_) seek_wiring(vehicle_, train_, result(), conclusion_);
     seek_reason(vehicle_, train_, settings_.thresholds, conclusion_);
-    if (!result().correction || !result().correction->adopted) return;
-    if (force_ != nullptr && result().improvement.low > 0.0) {
-      // What the force does on such an axis is known, of its numbers and of its thrust nothing is.
+    // What the force does on such an axis is known, of its numbers and of its thrust nothing is.
+    if (force_ != nullptr)
       conclusion_.reasons.push_back(
           {inference::Cause::kFreeForce, result().correction->log_odds, learning_.limits.odds, std::string{kLearned}});
-    } else {
-      refuse("on runs that no fit has seen it does not surely lower the error");
-    }
   }
 
   /// What begins where no fit could see it is something that nothing here explains.

@@ -56,21 +56,15 @@ const model::LearnedForce* force_for(const learning::Learned& learned, const Jud
 
 bool helps(const Interval& gain) { return gain.low > 0.0 || (std::isinf(gain.low) && gain.value > kEvident); }
 
-bool harms(const Interval& gain) { return helps({-gain.value, -gain.high, -gain.low}); }
-
-Interval held_back(const Judges& judges, const Conclusion& conclusion) {
-  const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, judges.input_step);
-  const model::Model after = likelihood::model_of(conclusion.reported.hypothesis, judges.input_step);
+Interval gain_of(const Judges& judges, const model::Model& before, const model::Model& after) {
   const std::vector<model::Window> windows = judges.windows(before, after).windows;
   if (windows.empty()) return {kNotAsked, kNotAsked, kNotAsked};
   return residual::improvement(residual::predict(before, windows), residual::predict(after, windows), judges.vehicle);
 }
 
-double raises_error(const Judges& judges, const model::Model& before, const model::Model& after) {
-  const std::vector<model::Window> windows = judges.windows(before, after).windows;
-  if (windows.empty()) return 0.0;
-  return -residual::improvement(residual::predict(before, windows), residual::predict(after, windows), judges.vehicle)
-              .value;
+Interval held_back(const Judges& judges, const Conclusion& conclusion) {
+  return gain_of(judges, likelihood::model_of(conclusion.reported_base.hypothesis, judges.input_step),
+                 likelihood::model_of(conclusion.reported.hypothesis, judges.input_step));
 }
 
 void judge_predictions(const Judges& judges, const model::Model& before, const model::Model& after,

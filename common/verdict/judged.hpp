@@ -33,14 +33,11 @@ struct Judges {
 /// Surely, or where too few windows tell how sure that is, by much.
 [[nodiscard]] bool helps(const Interval& gain);
 
-/// The same of an error that rises.
-[[nodiscard]] bool harms(const Interval& gain);
-
-/// By how much the open-loop error falls with the names on the runs that judge; NaN where these have no window.
+/// By how much the open-loop error on the runs that judge falls from `before` to `after`; NaN where these have no
+/// window.
+[[nodiscard]] Interval gain_of(const Judges& judges, const model::Model& before, const model::Model& after);
+/// The same with the names.
 [[nodiscard]] Interval held_back(const Judges& judges, const inference::Conclusion& conclusion);
-
-/// Share by which the open-loop error is larger by `after` than by `before`; below 0: smaller.
-[[nodiscard]] double raises_error(const Judges& judges, const model::Model& before, const model::Model& after);
 
 /// Predictions beside the simplest ones. An axis that is foretold worse than by saying that nothing changes has no
 /// model.

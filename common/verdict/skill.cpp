@@ -47,17 +47,16 @@ std::size_t span_of(const Trial& trial, std::size_t axis) {
   return std::max(least, *middle);
 }
 
-/// Errors of velocities that `step` carries on: nu of sample k becomes that of k + 1, and down_B with it.
+/// Errors of velocities that `step` carries on: nu of sample k becomes that of k + 1.
 template <typename Step>
 Predictions predict_by(std::span<const model::Window> windows, const Step& step) {
   Predictions predictions;
   for (const model::Window& window : windows) {
     const Trial& trial = *window.trial;
     Vector6d nu = trial.nu[window.start];
-    Eigen::Vector3d down_B = down_of(trial, window.start);
     WindowErrors errors;
     for (std::size_t k = 1; k < window.count; ++k) {
-      step(trial, window.start + k - 1, nu, down_B);
+      step(trial, window.start + k - 1, nu);
       for (std::size_t axis = 0; axis < 6; ++axis) {
         if (!residual::is_measured(trial, window.start + k, axis)) continue;
         const auto a = static_cast<Eigen::Index>(axis);
@@ -122,38 +121,37 @@ std::array<PlainAxis, 6> plain_fit(const model::Vehicle& vehicle, std::span<cons
       }
     }
     if (count < 20.0) continue;
-    // Scaled, and with a trace of a ridge: an input that is always zero leaves the others their meaning.
     const Row scale = A.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0.0 ? 1.0 / x : 0.0; });
+    // Scaled, and with a trace of a ridge: an input that is always zero leaves the others their meaning.
     const Information scaled =
         scale.asDiagonal() * A * scale.asDiagonal() + 1e-9 * Information{Information::Identity()};
-    const SymmetricFactor factor{scaled};
-    const Row x = scale.cwiseProduct(factor.solve(scale.cwiseProduct(b)));
-    const double residual = std::max(square - b.dot(x), 1e-12 * square) / (count - 5.0);
-    const double variance = residual * scale[0] * scale[0] * factor.solve(Row::Unit(0))[0];
-    plain[axis] = {x[0], x[1], x[2], x[3], x[4], variance > 0.0 ? x[0] / std::sqrt(variance) : 0.0, true};
+    const Row right = scale.cwiseProduct(b);
+    const SymmetricFactor of_axis{Eigen::MatrixXd{scaled.topLeftCorner<4, 4>()}}, with_tilt{scaled};
+    const Eigen::Vector4d x = scale.head<4>().cwiseProduct(Eigen::Vector4d{of_axis.solve(right.head<4>())});
+    const Row y = scale.cwiseProduct(Row{with_tilt.solve(right)});
+    const double residual = std::max(square - b.dot(y), 1e-12 * square) / (count - 5.0);
+    const double variance = residual * scale[0] * scale[0] * with_tilt.solve(Row::Unit(0))[0];
+    plain[axis] = {x[0], x[1], x[2], x[3], variance > 0.0 ? y[0] / std::sqrt(variance) : 0.0, true};
   }
   return plain;
 }
 
 Predictions predict_unchanged(std::span<const model::Window> windows) {
-  return predict_by(windows, [](const Trial&, std::size_t, Vector6d&, Eigen::Vector3d&) {});
+  return predict_by(windows, [](const Trial&, std::size_t, Vector6d&) {});
 }
 
 Predictions predict_plainly(const model::Vehicle& vehicle, const std::array<PlainAxis, 6>& plain,
                             std::span<const model::Window> windows) {
   const model::Allocation of_wrench = model::nominal_model(vehicle, true).allocation,
                           of_thrusters = model::nominal_model(vehicle, false).allocation;
-  return predict_by(windows, [&](const Trial& trial, std::size_t k, Vector6d& nu, Eigen::Vector3d& down_B) {
+  return predict_by(windows, [&](const Trial& trial, std::size_t k, Vector6d& nu) {
     const Vector6d tau = wrench(trial.input_is_wrench ? of_wrench : of_thrusters, trial, k);
-    const Eigen::Vector3d down_before = down_B;
-    down_B = (down_B + trial.dt * down_B.cross(nu.tail<3>())).normalized();
     for (std::size_t axis = 0; axis < 6; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
       const PlainAxis& p = plain[axis];
       if (!p.known) continue;
-      const double by_tilt = p.constant + p.tilt * tilt_of(down_before, axis);
       const auto rate = [&](double v) {
-        return p.input * tau[a] + p.linear * v + p.quadratic * std::abs(v) * v + by_tilt;
+        return p.input * tau[a] + p.linear * v + p.quadratic * std::abs(v) * v + p.constant;
       };
       const double middle = nu[a] + 0.5 * trial.dt * rate(nu[a]);
       nu[a] = std::clamp(nu[a] + trial.dt * rate(middle), -kMostSpeed, kMostSpeed);

@@ -13,11 +13,12 @@ namespace fathom::verdict {
 
 constexpr std::size_t kFiveSeconds = 1;  ///< place among residual::kHorizons: the horizon at which models are judged
 
-/// nu_dot = input tau + linear nu + quadratic |nu| nu + constant + tilt d, of one axis by itself; d of roll -cos(theta)
-/// sin(phi), of pitch -sin(theta): what rights a craft, without which a trim that holds it would seem to push backward.
+/// nu_dot = input tau + linear nu + quadratic |nu| nu + constant, of one axis by itself.
 struct PlainAxis {
-  double input{}, linear{}, quadratic{}, constant{}, tilt{};  ///< SI; input: m/s^2 per N, rad/s^2 per N m
-  double t_of_input{};  ///< Student's t of `input`: between -3 and 3 or so the input does not act
+  double input{}, linear{}, quadratic{}, constant{};  ///< SI; input: m/s^2 per N, rad/s^2 per N m
+  /// Student's t of `input`: between -3 and 3 or so the input does not act. Of an equation that also knows what rights
+  /// a tilted craft: else a trim that holds it, against its weight, would seem to push backward.
+  double t_of_input{};
   bool known{};
 };
 

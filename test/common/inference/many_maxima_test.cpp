@@ -78,7 +78,7 @@ TEST_CASE("many maxima: a coupling of inertias has its size, though base numbers
   CHECK(size_of_effect(problem, seen, 0) > 0.5 * expected);
 }
 
-TEST_CASE("many maxima: what was refused for its size or a limit is no rival of what was found") {
+TEST_CASE("many maxima: what was refused for a limit is no rival of what was found, and what is too small to matter is") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   const auto dive = test::fly(vehicle, {.duration = 30.0, .force = 0.05});
   const likelihood::Problem problem = likelihood::make_problem(vehicle, {&dive.trial, 1});
@@ -95,10 +95,13 @@ TEST_CASE("many maxima: what was refused for its size or a limit is no rival of 
   const Fitted base = fitted("", 0.0), found = fitted("current", 100.0);
   fitted("wave", 95.0);
   fitted("thruster_lag", 2000.0);  // taken by nobody
-  const Standing standing = models.standing(found, base.score, "current");
+  const Standing standing = models.standing(found, base.score, "current", {});
   CHECK(standing.rival == "wave");
   CHECK(standing.probability > 0.9);
   CHECK(standing.probability < 1.0);
+  const Standing beside_small = models.standing(found, base.score, "current", {{"thruster_lag"}});
+  CHECK(beside_small.rival == "thruster_lag");
+  CHECK(beside_small.probability < 0.1);
 }
 
 TEST_CASE("many maxima: forms that act in place of each other do not stand in one model, others do") {
