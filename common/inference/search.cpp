@@ -308,7 +308,6 @@ double Searching::guessed_loss(const Seen& seen, std::size_t effect) const {
     if (law != laws_.end() &&
         std::ranges::find(law->linear, static_cast<std::size_t>(number.component)) == law->linear.end())
       continue;
-    if (seen.covariance(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(j)) <= 0.0) continue;  // on its limit
     places.push_back(static_cast<Eigen::Index>(j));
     values.push_back(value(seen.fit.hypothesis, number));
   }

@@ -13,20 +13,15 @@ using likelihood::NumberKind;
 
 namespace {
 
-/// Slope of the objective by the numbers where it was fitted, 0 of those that it presses against a limit.
-Eigen::VectorXd slope_within(const Seen& seen, std::vector<Eigen::Index>& free) {
-  const Eigen::Index p = seen.fit.information.rows();
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(p);
+/// Slope of the objective by the numbers, where it was fitted.
+Eigen::VectorXd slope_of(const Seen& seen) {
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(seen.fit.information.rows());
   for (const likelihood::RunReference& run : seen.reference)
     slope.noalias() -= run.J.transpose() * Eigen::VectorXd{run.slope.reshaped()};
-  for (Eigen::Index j = 0; j < p; ++j) {
+  for (Eigen::Index j = 0; j < slope.size(); ++j) {
     const likelihood::Number& number = seen.fit.numbers[static_cast<std::size_t>(j)];
     const double x = value(seen.fit.hypothesis, number);
     slope[j] -= (x - number.mean) * likelihood::prior_weight(number, x);
-    if ((x <= number.low && slope[j] < 0.0) || (x >= number.high && slope[j] > 0.0))
-      slope[j] = 0.0;
-    else
-      free.push_back(j);
   }
   return slope;
 }
@@ -36,13 +31,8 @@ Eigen::VectorXd slope_within(const Seen& seen, std::vector<Eigen::Index>& free) 
 Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
   Seen seen{.fit = std::move(fit)};
   likelihood::refer(problem, seen.fit, seen.reference, threads);
-  // What is pressed against a limit makes room for nothing: of a craft that never reverses, the share of drag that goes
-  // with |u| would promise without end to do what X_u, held at zero, may not.
-  std::vector<Eigen::Index> free;
-  const Eigen::VectorXd slope = slope_within(seen, free);
-  seen.covariance = Eigen::MatrixXd::Zero(slope.size(), slope.size());
-  seen.covariance(free, free) = inverse_symmetric(Eigen::MatrixXd{seen.fit.information(free, free)});
-  seen.step = seen.covariance * slope;
+  seen.covariance = inverse_symmetric(seen.fit.information);
+  seen.step = seen.covariance * slope_of(seen);
   Vector6d square = Vector6d::Zero(), moved = Vector6d::Zero();
   double count = 0.0;
   const std::vector<likelihood::Number> none;

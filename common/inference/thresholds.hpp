@@ -39,8 +39,9 @@ struct Thresholds {
   /// sealed sets with a complete model none had more than .002; where something unlisted acted it was .03 to .2, and
   /// unseen runs erred by as much less.
   double disagreement{0.01};
-  /// Share by which names must surely raise the error on runs that judge to be no claim: where they were right it rose
-  /// by .017 at most (the test "claims"), and no sealed set has a model that errs by .02 more than without (71 sets).
+  /// Share by which names must raise the error on runs that judge, by more than chance, to be no claim: where they were
+  /// right it rose by .017 at most (the test "claims"), and no sealed set has a model that errs by .02 more than
+  /// without (71 sets).
   double misled{0.02};
 
   /// How often a name of that evidence, nats, is right, as sealed sets show (docs/benchmark.md has the curve): no model

@@ -97,7 +97,8 @@ class Diagnosing {
     }
     if (conclusion_.reported.finite && !conclusion_.found.best.names.empty())
       names_help_ = held_back(judges_, conclusion_);
-    if (names_claim(conclusion_.verdict) && names_help_.high < -settings_.thresholds.misled) {
+    if (names_claim(conclusion_.verdict) && names_help_.high < 0.0 &&
+        names_help_.value < -settings_.thresholds.misled) {
       conclusion_.reasons.push_back(
           {inference::Cause::kNamesMislead, names_help_.value, -settings_.thresholds.misled, ""});
       conclusion_.verdict = Verdict::unexplained;
