@@ -14,8 +14,8 @@ struct Seen {
   likelihood::Fit fit;
   likelihood::Reference reference;
   Eigen::MatrixXd covariance;  ///< of the numbers, prior included
-  /// That the numbers would take under the seen noise, over limits that they press against: they move along with what
-  /// is asked, and nothing is promised for what one of them may not do.
+  /// That the numbers would take under the seen noise: they move along with what is asked, and nothing is promised for
+  /// what they do by themselves. 0 of those that are pressed against a limit.
   Eigen::VectorXd step;
   std::vector<Eigen::MatrixXd> inverse;  ///< per run: inverse inertia of every block, 36 x blocks
   Vector6d applied{Vector6d::Zero()};  ///< rms of the actuators' acceleration, per axis of the body; where none pushes,

@@ -13,7 +13,7 @@ using likelihood::NumberKind;
 
 namespace {
 
-/// Slope of the objective by the numbers, where it was fitted.
+/// Slope of the objective by the numbers; 0 of those that it presses against a limit: they stay there.
 Eigen::VectorXd slope_of(const Seen& seen) {
   Eigen::VectorXd slope = Eigen::VectorXd::Zero(seen.fit.information.rows());
   for (const likelihood::RunReference& run : seen.reference)
@@ -22,6 +22,7 @@ Eigen::VectorXd slope_of(const Seen& seen) {
     const likelihood::Number& number = seen.fit.numbers[static_cast<std::size_t>(j)];
     const double x = value(seen.fit.hypothesis, number);
     slope[j] -= (x - number.mean) * likelihood::prior_weight(number, x);
+    if ((x <= number.low && slope[j] < 0.0) || (x >= number.high && slope[j] > 0.0)) slope[j] = 0.0;
   }
   return slope;
 }

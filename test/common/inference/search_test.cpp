@@ -210,35 +210,6 @@ TEST_CASE("scan: under another noise promises are those of numbers that have mov
   }
 }
 
-TEST_CASE("scan: nothing is promised for what a number of the model may not do") {
-  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
-  // A craft that goes ahead only, and something that pushes with its speed: drag may not, and the share of drag that
-  // goes with |u| would do just that.
-  const auto tow = [](double, const Vector6d& nu) {
-    Vector6d a = Vector6d::Zero();
-    a[0] = 2.0 * (0.8 - nu[0]) + 3.0 * nu[0];
-    return a;
-  };
-  const auto dive = test::fly(vehicle, {.duration = 60.0, .seed = 6, .force = 0.02, .outside = tow});
-  const likelihood::Problem problem = likelihood::make_problem(vehicle, {&dive.trial, 1});
-  const likelihood::Fit base =
-      likelihood::fit(problem, likelihood::nominal_hypothesis(problem), likelihood::prior_noise(problem), {});
-  const Seen seen = see(problem, base, 1);
-  const auto drag = std::ranges::find(base.numbers, "X_u", &likelihood::Number::name);
-  REQUIRE(drag != base.numbers.end());
-  CHECK(value(base.hypothesis, *drag) == drag->high);
-  CHECK(seen.step[drag - base.numbers.begin()] > 0.0);
-  const std::vector<Law> laws = catalogue(model::scene_of(vehicle, {&dive.trial, 1}), {});
-  const Scan found = scan(problem, seen, laws, {}, 1);
-  bool asked = false;
-  for (const Promise& promise : found.promises) {
-    if (laws[promise.law].name != "asymmetric_drag" || laws[promise.law].form != "X_|u|") continue;
-    asked = true;
-    CHECK(promise.score < Thresholds{}.score_worth);
-  }
-  CHECK(asked);
-}
-
 TEST_CASE("search: spikes, heavy tails and a scale that varies give no name") {
   const Conclusion noisy =
       inferred({.duration = 90.0, .seed = 8, .force = 0.03, .sensor_factor = [](double t, std::mt19937& random) {
