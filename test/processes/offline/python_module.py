@@ -13,7 +13,7 @@ import numpy
 
 import fathom
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SOURCE = pathlib.Path(__file__).resolve().parents[3]
 FOLDER = pathlib.Path(sys.argv.pop(1))
 HEAVY = SOURCE / "config/vehicles/bluerov2_heavy.yaml"
 
