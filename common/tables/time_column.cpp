@@ -112,7 +112,7 @@ std::string nanoseconds_beside(const CsvTable& table, const Column& seconds, con
 class TimeColumn {
  public:
   TimeColumn(const CsvTable& table, Resolver& resolve, const ColumnMap& map, std::vector<std::string>& notes)
-      : table_(table), columns_(map.time.columns), factors_(map.time_factors) {
+      : columns_(map.time.columns), factors_(map.time_factors) {
     factors_.resize(columns_.size(), map.time.factor);
     const Paged<double>& first = *resolve(columns_.front());
     if (columns_.size() == 1) {
@@ -170,7 +170,6 @@ class TimeColumn {
     }
   }
 
-  const CsvTable& table_;
   std::vector<Column> columns_;
   std::vector<double> factors_;
   std::vector<ColumnData> data_;
