@@ -19,4 +19,7 @@ struct DateText {
 /// what is no date of the calendar.
 [[nodiscard]] std::optional<DateText> read_date(std::string_view text);
 
+/// Whether these can be seconds since 1970 and, being so many, hardly anything else: of the years 2001 to 2096.
+[[nodiscard]] constexpr bool is_since_1970(double seconds) { return seconds >= 1e9 && seconds <= 4e9; }
+
 }  // namespace fathom::tables

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "common/tables/date_text.hpp"
 #include "common/tables/map_writer.hpp"
 
 namespace fathom::tables {
@@ -12,8 +13,7 @@ namespace {
 /// The unit in which a column counts from 1970, or in which its rows lie as far apart as those of a recording do; null
 /// where it does not rise.
 const char* likely_unit(const Paged<double>& column) {
-  constexpr double kLongest = 2.0, kLongestDated = 60.0;      // s between rows
-  constexpr double kEarliestEpoch = 1e9, kLatestEpoch = 4e9;  // s since 1970, from 2001 to 2096
+  constexpr double kLongest = 2.0, kLongestDated = 60.0;  // s between rows
   std::vector<double> steps;
   for (std::size_t i = 1; i < std::min<std::size_t>(column.size(), 1000); ++i) {
     if (column[i] > column[i - 1]) steps.push_back(column[i] - column[i - 1]);
@@ -25,8 +25,7 @@ const char* likely_unit(const Paged<double>& column) {
   const char* by_step = nullptr;
   double factor = 1.0;
   for (const char* unit : {"s", "ms", "us", "ns"}) {
-    const double since_1970 = factor * *first;
-    if (since_1970 >= kEarliestEpoch && since_1970 <= kLatestEpoch && factor * *middle <= kLongestDated) return unit;
+    if (first != column.end() && is_since_1970(factor * *first) && factor * *middle <= kLongestDated) return unit;
     if (by_step == nullptr && factor * *middle <= kLongest) by_step = unit;
     factor *= 1e-3;
   }

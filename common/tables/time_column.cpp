@@ -11,6 +11,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/statistics.hpp"
+#include "common/tables/date_text.hpp"
 #include "common/tables/readers.hpp"
 
 namespace fathom::tables {
@@ -24,8 +25,6 @@ constexpr double kDay = 86400.0;         // s
 constexpr double kClocksDiffer = 0.005;  // of the rate: no crystal is off so far
 constexpr double kFewestSteps = 20.0;    // of a clock that may be written in whole seconds
 constexpr std::array<std::pair<const char*, double>, 3> kFinerUnits{{{"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}}};
-// Seconds since 1970 between the years 2001 and 2096: what an epoch in a finer unit is recognised by.
-constexpr double kEarliestEpoch = 1e9, kLatestEpoch = 4e9;
 
 std::string lower(std::string_view text) {
   std::string copy(text);
@@ -134,7 +133,7 @@ class TimeColumn {
     for (std::size_t row = 0; row < table.rows() && !dates_; ++row) {
       const double first_time = seconds(row);
       if (!std::isfinite(first_time)) continue;
-      dated_ = first_time >= kEarliestEpoch && first_time <= kLatestEpoch;
+      dated_ = is_since_1970(first_time);
       break;
     }
     dated_ = dated_ || dates_;
@@ -164,7 +163,7 @@ class TimeColumn {
     if (first == values.end()) return;
     for (const auto& [unit, finer] : kFinerUnits) {
       const double seconds = finer * *first;
-      if (*first < kMaxSeconds || seconds < kEarliestEpoch || seconds > kLatestEpoch) continue;
+      if (*first < kMaxSeconds || !is_since_1970(seconds)) continue;
       factors_.front() = finer;
       notes.push_back("time: '" + columns_.front().name + "' is read as " + unit + " since 1970");
     }
@@ -236,7 +235,7 @@ Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnMap& map, s
     if (std::abs(seconds) > kMaxSeconds) {
       std::string remedy = "is its unit right?";
       for (const auto& [unit, finer] : kFinerUnits) {
-        if (time.factor() == 1.0 && seconds * finer > kEarliestEpoch && seconds * finer < kLatestEpoch)
+        if (time.factor() == 1.0 && is_since_1970(seconds * finer))
           remedy = std::string("is it in ") + unit + "? " + written(time.first(), unit);
       }
       throw InputError(table.where(row) + ": time " + std::to_string(seconds) + " s is too large; " + remedy);

@@ -78,6 +78,7 @@ void judge_predictions(const Judges& judges, const model::Model& before, const m
   result.residual_before = residual::whiteness(before, unseen, residual_before);
   result.residual_after = residual::whiteness(after, unseen, residual_after);
   report.traces = residual::traces_of(unseen, before, after, residual_before, residual_after);
+  given.explainable.clear();
   const auto& free = conclusion.found.free_force;
   for (std::size_t i = 0; free && i < free->explainable.size() && i < conclusion.random.size(); ++i)
     given.explainable.push_back(

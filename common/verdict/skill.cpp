@@ -98,7 +98,7 @@ std::array<PlainAxis, 6> plain_fit(const model::Vehicle& vehicle, std::span<cons
       const model::Allocation allocation = model::nominal_model(vehicle, trial.input_is_wrench).allocation;
       const std::size_t span = span_of(trial, axis);
       const auto most = static_cast<std::size_t>(kMostStep * static_cast<double>(span));
-      for (std::size_t k = 0, next = 0; k + span < trial.size(); k = std::max(next, k + 1)) {
+      for (std::size_t k = 0, next = 0; k + span < trial.size(); k = next) {
         next = k + 1;
         if (!residual::is_measured(trial, k, axis)) continue;
         next = k + span;
