@@ -1,42 +1,19 @@
 #include "common/recordings/draft_columns.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string_view>
-#include <utility>
 
 #include "common/base/units.hpp"
+#include "common/recordings/column_words.hpp"
 #include "common/tables/map_writer.hpp"
+#include "common/tables/unit_words.hpp"
 
 namespace fathom::recordings {
 
 using tables::CsvTable;
-
-namespace {
-
-/// "surge_cm_s": a name that ends with its unit. Longer ones first.
-constexpr std::array<std::pair<std::string_view, const char*>, 16> kEndings{{{"_deg_s", "deg/s"},
-                                                                             {"_rad_s", "rad/s"},
-                                                                             {"_m_s2", "m/s^2"},
-                                                                             {"_mm_s", "mm/s"},
-                                                                             {"_cm_s", "cm/s"},
-                                                                             {"_deg", "deg"},
-                                                                             {"_rad", "rad"},
-                                                                             {"_m_s", "m/s"},
-                                                                             {"_nm", "N m"},
-                                                                             {"_mm", "mm"},
-                                                                             {"_cm", "cm"},
-                                                                             {"_kn", "kn"},
-                                                                             {"_mv", "mV"},
-                                                                             {"_n", "N"},
-                                                                             {"_m", "m"},
-                                                                             {"_v", "V"}}};
-
-}  // namespace
 
 std::string lower_case(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -46,7 +23,8 @@ std::string lower_case(std::string text) {
 Columns::Columns(const CsvTable& table) : table_{table} {
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     Column column{.name = &table.names[i],
-                  .bare = lower_case(table.names[i]),
+                  .bare = {},
+                  .words = {},
                   .unit = table.units[i],
                   .least = std::numeric_limits<double>::infinity(),
                   .greatest = -std::numeric_limits<double>::infinity()};
@@ -56,27 +34,39 @@ Columns::Columns(const CsvTable& table) : table_{table} {
       column.least = std::min(column.least, value);
       column.greatest = std::max(column.greatest, value);
     }
-    for (const auto& [ending, unit] : kEndings) {
-      if (!column.bare.ends_with(ending) || column.bare.size() == ending.size()) continue;
-      column.bare.resize(column.bare.size() - ending.size());
-      if (column.unit.empty()) column.unit = unit;
-      break;
+    const tables::NameWithUnit parted = tables::unit_at_end(table.names[i]);
+    column.bare = lower_case(parted.name);
+    column.words = words_of(parted.name);
+    if (column.unit.empty()) column.unit = parted.unit;
+    for (const char* shaft : {"rpm", "rps"}) {  // "rpm_port" says it at its beginning
+      if (column.unit.empty() && std::ranges::find(column.words, shaft) != column.words.end()) column.unit = shaft;
     }
     all_.push_back(column);
   }
 }
 
 const Column* Columns::find(const Choices& choices) const {
-  for (const std::string_view choice : choices) {
-    for (std::size_t i = 0; i < all_.size(); ++i) {
-      const std::string name = lower_case(*all_[i].name);
-      const bool fits = choice.front() == '.' ? name.ends_with(choice) || name == choice.substr(1)
-                                              : name == choice || all_[i].bare == choice;
-      if (fits && all_[i].count > 0 && table_.faults[i].empty() && table_.cells_of(i) == tables::Cells::kNumbers)
-        return &all_[i];
+  const auto first = [&](const auto& fits) -> const Column* {
+    for (const std::string& choice : choices) {
+      for (std::size_t i = 0; i < all_.size(); ++i) {
+        if (holds_numbers(i) && fits(all_[i], choice)) return &all_[i];
+      }
     }
-  }
-  return nullptr;
+    return nullptr;
+  };
+  const Column* exactly = first([](const Column& one, const std::string& choice) {
+    const std::string name = lower_case(*one.name);
+    if (choice.front() == '.') return name.ends_with(choice) || name == choice.substr(1);
+    return name == choice || one.bare == choice;
+  });
+  if (exactly != nullptr) return exactly;
+  return first([](const Column& one, const std::string& choice) {
+    return choice.front() != '.' && one.words == words_of(choice);
+  });
+}
+
+bool Columns::holds_numbers(std::size_t i) const {
+  return all_[i].count > 0 && table_.faults[i].empty() && table_.cells_of(i) == tables::Cells::kNumbers;
 }
 
 Group::Group(const Columns& all, const std::vector<Choices>& components) {
@@ -123,7 +113,8 @@ std::string angle_unit(const Group& group) {
 }
 std::string rate_unit(const Group& group) {
   constexpr double kFastest = 6.0;  // rad/s
-  return group.unit("rad/s", group.largest() > kFastest ? "deg/s" : "rad/s");
+  const std::string unit = group.unit("rad/s", group.largest() > kFastest ? "deg/s" : "rad/s");
+  return unit == "rps" ? "rad/s" : unit;  // of a craft, not of a shaft
 }
 
 }  // namespace fathom::recordings

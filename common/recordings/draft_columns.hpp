@@ -4,13 +4,15 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/tables/csv.hpp"
 
 namespace fathom::recordings {
 
-/// Names of one component, lower case, best first. A name that begins with a point stands for every name that ends so.
+/// Names of one component, lower case, best first; a column of the same words in other order or writing comes after all
+/// that are called exactly so (column_words.hpp). A name that begins with a point stands for every name that ends so.
 using Choices = std::vector<std::string>;
 
 [[nodiscard]] std::string lower_case(std::string text);
@@ -18,6 +20,7 @@ using Choices = std::vector<std::string>;
 struct Column {
   const std::string* name{};
   std::string bare;  ///< lower case, without a unit at its end
+  std::vector<std::string> words;
   std::string unit;  ///< as the header or the name's end says; empty: neither does
   double least{}, greatest{};
   std::size_t count{};  ///< numbers in it
@@ -30,6 +33,8 @@ class Columns {
   /// The column of the first choice that is there and holds numbers.
   [[nodiscard]] const Column* find(const Choices& choices) const;
 
+  [[nodiscard]] bool holds_numbers(std::size_t i) const;
+
  private:
   const tables::CsvTable& table_;
   std::vector<Column> all_;
@@ -40,6 +45,7 @@ struct Group {
   std::vector<const Column*> columns;
 
   Group(const Columns& all, const std::vector<Choices>& components);
+  explicit Group(std::vector<const Column*> known) : columns{std::move(known)} {}
   [[nodiscard]] std::size_t there() const;
   [[nodiscard]] bool whole() const { return there() == columns.size(); }
   /// As a map lists them; `none` where there is none.

@@ -11,7 +11,7 @@ namespace fathom::recordings {
 
 struct ThrustDraft {
   std::string lines;   ///< of the section; empty: nothing drives the craft by these columns
-  std::string remark;  ///< a comment where nothing does: actuators of which some have no column
+  std::string remark;  ///< a comment where nothing does: what is missing, and what to write
 };
 
 /// Commands of the vehicle's actuators, else pulses, else a wrench, else what a Slocum drives itself by.

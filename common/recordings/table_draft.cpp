@@ -24,7 +24,10 @@ std::string attitude_of(const Columns& all) {
   const Group wxyz{all, {{"qw", "q_w"}, {"qx", "q_x"}, {"qy", "q_y"}, {"qz", "q_z"}}};
   if (wxyz.whole()) return "  quaternion: {columns: " + wxyz.list() + ", order: wxyz, world: NED, body: FRD}\n";
   const Group euler{
-      all, {{"phi", "roll", "m_roll"}, {"theta", "pitch", "m_pitch"}, {"psi", "yaw", "heading", "hdg", "m_heading"}}};
+      all,
+      {{"phi", "roll", "m_roll", "roll_angle"},
+       {"theta", "pitch", "m_pitch", "pitch_angle"},
+       {"psi", "yaw", "heading", "hdg", "m_heading", "yaw_angle", "heading_angle", "true_heading", "heading_true"}}};
   if (euler.there() == 0) return "";
   return "  euler: {columns: " + euler.list() + ", unit: " + angle_unit(euler) + ", world: NED, body: FRD}\n";
 }
@@ -33,7 +36,10 @@ std::string attitude_of(const Columns& all) {
 std::string position_of(const Columns& all, bool& with_depth) {
   const Group ros{all, {{".position.x"}, {".position.y"}, {".position.z"}}};
   if (ros.there() > 1) return vector_line("position", ros, ros.unit("m", "m"), "ENU");
-  Group ned{all, {{"x", "north", "x_ned"}, {"y", "east", "y_ned"}, {"z", "down", "z_ned"}}};
+  Group ned{all,
+            {{"x", "north", "x_ned", "pos_x", "pos_n", "pos_north", "northing", "x_n"},
+             {"y", "east", "y_ned", "pos_y", "pos_e", "pos_east", "easting", "y_e"},
+             {"z", "down", "z_ned", "pos_z", "pos_d", "pos_down"}}};
   const Column* depth = all.find({"depth"});
   with_depth = ned.columns[0] != nullptr && ned.columns[1] != nullptr && ned.columns[2] == nullptr &&
                depth != nullptr && depth->unit == ned.columns[0]->unit;
@@ -50,16 +56,22 @@ std::string inertial_of(const Columns& all) {
                    {".angular_velocity.y", ".angular.y"},
                    {".angular_velocity.z", ".angular.z"}}};
   const Group rates{all,
-                    {{"p", "roll_rate", "rollrate", "rollspeed", "wx", "gyrx", "gyr_x", "gyro_x"},
-                     {"q", "pitch_rate", "pitchrate", "pitchspeed", "wy", "gyry", "gyr_y", "gyro_y"},
-                     {"r", "yaw_rate", "yawrate", "yawspeed", "rot", "wz", "gyrz", "gyr_z", "gyro_z"}}};
+                    {{"p", "roll_rate", "rollrate", "rollspeed", "roll_speed", "wx", "gyrx", "gyr_x", "gyro_x", "gx",
+                      "ang_vel_x", "ang_rate_x", "omega_x"},
+                     {"q", "pitch_rate", "pitchrate", "pitchspeed", "pitch_speed", "wy", "gyry", "gyr_y", "gyro_y",
+                      "gy", "ang_vel_y", "ang_rate_y", "omega_y"},
+                     {"r", "yaw_rate", "yawrate", "yawspeed", "yaw_speed", "rot", "rate_of_turn", "turn_rate", "wz",
+                      "gyrz", "gyr_z", "gyro_z", "gz", "ang_vel_z", "ang_rate_z", "omega_z"}}};
   if (ros.there() > 0) {
     text += vector_line("rates", ros, rate_unit(ros), "FLU");
   } else if (rates.there() > 0) {
     text += vector_line("rates", rates, rate_unit(rates), "FRD");
   }
   const Group felt{all, {{".linear_acceleration.x"}, {".linear_acceleration.y"}, {".linear_acceleration.z"}}};
-  const Group force{all, {{"ax", "accx", "acc_x"}, {"ay", "accy", "acc_y"}, {"az", "accz", "acc_z"}}};
+  const Group force{all,
+                    {{"ax", "accx", "acc_x", "lin_acc_x"},
+                     {"ay", "accy", "acc_y", "lin_acc_y"},
+                     {"az", "accz", "acc_z", "lin_acc_z"}}};
   if (felt.whole()) text += vector_line("specific_force", felt, felt.unit("m/s^2", "m/s^2"), "FLU");
   if (force.whole()) text += vector_line("specific_force", force, force.unit("m/s^2", "m/s^2"), "FRD");
   return text;
@@ -68,9 +80,18 @@ std::string inertial_of(const Columns& all) {
 std::string velocity_of(const Columns& all) {
   const Group ros{all, {{".linear.x"}, {".linear.y"}, {".linear.z"}}};
   if (ros.there() > 0) return vector_line("velocity", ros, ros.unit("m/s", "m/s"), "FLU");
-  const Group body{all, {{"u", "surge", "vx"}, {"v", "sway", "vy"}, {"w", "heave", "vz"}}};
+  const Group body{all,
+                   {{"u", "surge", "vx", "surge_vel", "vel_x", "v_x", "vel_u", "fore_vel"},
+                    {"v", "sway", "vy", "sway_vel", "vel_y", "v_y", "vel_v"},
+                    {"w", "heave", "vz", "heave_vel", "vel_z", "v_z", "vel_w"}}};
   if (body.there() > 0) return vector_line("velocity", body, body.unit("m/s", "m/s"), "FRD");
-  const Group course{all, {{"cog", "course"}}}, speed{all, {{"sog", "speed"}}};
+  const Group world{all,
+                    {{"vn", "vel_n", "vel_north", "v_n", "v_north"},
+                     {"ve", "vel_e", "vel_east", "v_e", "v_east"},
+                     {"vd", "vel_d", "vel_down", "v_d", "v_down"}}};
+  if (world.there() > 1) return vector_line("velocity", world, world.unit("m/s", "m/s"), "NED");
+  const Group course{all, {{"cog", "course", "course_over_ground"}}},
+      speed{all, {{"sog", "speed", "speed_over_ground"}}};
   if (!course.whole() || !speed.whole()) return "";
   return "  course: {column: " + tables::written_name(*course.columns[0]->name) + ", unit: " + angle_unit(course) +
          "}\n  speed: {column: " + tables::written_name(*speed.columns[0]->name) +
@@ -133,8 +154,11 @@ std::string describe_table(const tables::CsvTable& table, const std::vector<Comm
   const std::string streams =
       section("pose_capture", pose) + section("ahrs", inertial) + section("dvl", velocity_of(columns)) +
       section("depth", with_depth ? "" : scalar_of(columns, {"depth", "m_depth"}, "m", "  direction: down\n")) +
-      section("thrusters", thrust.lines) + thrust.remark +
-      section("battery", scalar_of(columns, {"voltage", "volt", "volts", "battery"}, "V", "")) +
+      section("thrusters", thrust.lines) +
+      section("battery", scalar_of(columns,
+                                   {"voltage", "volt", "volts", "battery", "battery_voltage", "vbat", "vbatt",
+                                    "bat_voltage", "batt_voltage", "supply_voltage"},
+                                   "V", "")) +
       section("wind", wind_of(columns));
   if (time.empty() || streams.empty())
     return text + "# " + (time.empty() ? "No column looks like the time" : "No column has a usual name") +
@@ -144,7 +168,7 @@ std::string describe_table(const tables::CsvTable& table, const std::vector<Comm
          "# 'none' is right only for axes along which the vehicle does not move (--vehicle).\n"
          "source: " +
          tables::written_name(std::filesystem::path(table.path).filename().string()) + "\nlicence: not stated\n" +
-         time + streams;
+         time + streams + thrust.remark;
 }
 
 }  // namespace fathom::recordings

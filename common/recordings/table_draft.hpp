@@ -10,7 +10,7 @@ namespace fathom::recordings {
 
 /// What a vehicle file's actuator is called, and what commands it.
 struct Commanded {
-  enum class By { kShaftSpeed, kAngle, kOther };
+  enum class By { kForce, kPulses, kShaftSpeed, kAngle, kOther };
   std::string name;
   By by{By::kOther};
 };

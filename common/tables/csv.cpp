@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "common/base/error.hpp"
-#include "common/base/units.hpp"
 #include "common/tables/date_text.hpp"
+#include "common/tables/unit_words.hpp"
 
 namespace fathom::tables {
 namespace {
@@ -178,29 +178,6 @@ bool has_two_dates(std::string_view cell) {
   };
   const auto stroke = [&] { return at < cell.size() && (cell[at] == '/' || cell[at] == '-') && ++at > 0; };
   return digits(2) > 0 && stroke() && digits(2) > 0 && stroke() && digits(4) == 4;
-}
-
-/// A unit as people write it, in the words of unit_factor; empty when it is none.
-std::string known_unit(std::string_view text) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 25> kOtherwise{
-      {{"sec", "s"},      {"secs", "s"},        {"seconds", "s"},     {"µs", "us"},       {"degrees", "deg"},
-       {"degree", "deg"}, {"°", "deg"},         {"°/s", "deg/s"},     {"radians", "rad"}, {"meters", "m"},
-       {"metres", "m"},   {"m/s2", "m/s^2"},    {"m/s²", "m/s^2"},    {"m s-1", "m/s"},   {"m.s-1", "m/s"},
-       {"m/sec", "m/s"},  {"rad/sec", "rad/s"}, {"deg/sec", "deg/s"}, {"knots", "kn"},    {"kts", "kn"},
-       {"volts", "V"},    {"N·m", "N m"},       {"degC", "C"},        {"deg_C", "C"},     {"rad s-1", "rad/s"}}};
-  for (const auto& [theirs, ours] : kOtherwise) {
-    if (text == theirs) return std::string(ours);
-  }
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  if (std::ranges::none_of(text, letter)) return {};  // "f(1)"
-  for (const char* dimension : {"s", "m", "rad", "m/s", "rad/s", "m/s^2", "N", "N m", "V", "A", "Pa", "C", "W", "Hz"}) {
-    try {
-      static_cast<void>(unit_factor(text, dimension));
-      return std::string(text);
-    } catch (const InputError&) {  // another dimension, or no unit
-    }
-  }
-  return {};
 }
 
 /// A table on its way in, line by line.

@@ -321,11 +321,21 @@ FromSource read_source(const Source& source, const std::string& map,
 
 namespace {
 
-recordings::Commanded::By commanded_by(model::CommandKind kind) {
+recordings::Commanded::By commanded_by(model::CommandKind kind, bool by_pulses) {
   using By = recordings::Commanded::By;
-  if (kind == model::CommandKind::kShaftSpeed) return By::kShaftSpeed;
-  const bool turned = kind == model::CommandKind::kFinAngle || kind == model::CommandKind::kAzimuthAngle;
-  return turned ? By::kAngle : By::kOther;
+  switch (kind) {
+    case model::CommandKind::kForce:
+      return by_pulses ? By::kPulses : By::kForce;
+    case model::CommandKind::kShaftSpeed:
+      return By::kShaftSpeed;
+    case model::CommandKind::kFinAngle:
+    case model::CommandKind::kAzimuthAngle:
+      return By::kAngle;
+    case model::CommandKind::kAzimuthForce:
+    case model::CommandKind::kWeight:
+      break;
+  }
+  return By::kOther;
 }
 
 }  // namespace
@@ -334,7 +344,8 @@ std::string describe_source(const Source& source, const std::optional<model::Veh
   if (source.is_table()) {
     std::vector<recordings::Commanded> actuators;
     if (vehicle) {
-      for (const model::Thruster& one : vehicle->thrusters) actuators.push_back({one.name, commanded_by(one.command)});
+      for (const model::Thruster& one : vehicle->thrusters)
+        actuators.push_back({one.name, commanded_by(one.command, !vehicle->curve.empty())});
     }
     return recordings::describe_table(tables::read_csv(source.files.front()), actuators);
   }

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "common/tables/import.hpp"
 
 namespace fathom {
@@ -124,7 +126,7 @@ TEST_CASE("table draft: columns that are called as the vehicle's actuators are c
   CHECK(tables::ColumnMap::parse(draft("u,delta", "1,20", ship), "draft.yaml").dvl.has_value());
   CHECK(holds(draft("u,delta", "1,20", ship), "# thrusters, inputs: a column for propeller is to be found"));
   // Pulses of thrusters with the same names are pulses, and nothing is missing.
-  const std::vector<recordings::Commanded> pushed{{"thr_1", By::kOther}, {"thr_2", By::kOther}};
+  const std::vector<recordings::Commanded> pushed{{"thr_1", By::kPulses}, {"thr_2", By::kPulses}};
   std::string pulses = "t,u,thr_1,thr_2\n";
   for (int k = 0; k < 4; ++k)
     pulses += std::to_string(k) + ",1," + std::to_string(1500 + k) + "," + std::to_string(1490 - k) + "\n";
@@ -135,6 +137,60 @@ TEST_CASE("table draft: columns that are called as the vehicle's actuators are c
   CHECK(holds(draft("u,n_starboard,n_port", "1,2,3", twin),
               "inputs: {columns: [n_port, n_starboard], units: [rpm, rpm]}"));
   CHECK(!holds(draft("u,n,rudder", "1,2,3", twin), "inputs"));  // which of two shafts 'n' is, nobody knows
+}
+
+TEST_CASE("table draft: names are read by their words and units, however they are written") {
+  const std::string rows = [] {
+    std::string text;
+    for (int k = 0; k < 20; ++k)
+      text += std::to_string(0.1 * k) + ",1,2,90," + std::to_string(0.5 + 0.01 * k) + ",0.25,180\n";
+    return text;
+  }();
+  for (const char* header : {"Time (s),X Position (m),Y Position (m),Heading Angle (deg),Surge Velocity (m/s),"
+                             "Sway Velocity (m/s),Yaw Rate (deg/s)",
+                             "time,posNorth,posEast,yawDeg,dvlVelX,dvlVelY,gyroZ_dps",
+                             "elapsed_s,northing_m,easting_m,compass_heading_deg,v_x_mps,v_y_mps,yaw_rate_deg_per_s",
+                             "t,pos_x,pos_y,heading_measured,surge speed,sway speed,Rate Of Turn [°/s]"}) {
+    CAPTURE(header);
+    std::string draft;
+    const Recording run = drafted(std::string{header} + "\n" + rows, draft, kBoat).recording;
+    CAPTURE(draft);
+    REQUIRE(run.pose_capture.size() == 20);
+    CHECK(run.pose_capture[0].p_WB == Eigen::Vector3d(1, 2, 0));
+    CHECK(run.pose_capture[0].q_WB.z() == doctest::Approx(std::sqrt(0.5)));
+    CHECK(run.dvl.at(0).v_WB_B == Eigen::Vector3d(0.5, 0.25, 0.0));
+    CHECK(run.ahrs.at(0).w_WB_B.z() == doctest::Approx(3.14159265));
+  }
+  // What is commanded is no measurement, a revolution a second is none of a craft, and what is of other kinds is
+  // nothing.
+  const auto described = [&](const std::string& header) {
+    return recordings::describe_table(tables::parse_csv(header + "\n" + rows, "r.csv"));
+  };
+  CHECK(described("t,a,b,yaw_cmd,c,d,e").find("No column has a usual name") != std::string::npos);
+  CHECK(described("t,a,b,yaw_temperature,u,d,e").find("euler") == std::string::npos);
+  CHECK(described("t,a,b,c,r_rps,d,e").find("rates: {columns: [none, none, r_rps], unit: rad/s") != std::string::npos);
+  CHECK(described("t,vn,ve,heading,u_cmd,d,e").find("velocity: {columns: [vn, ve, none], unit: m/s, frame: NED}") !=
+        std::string::npos);
+}
+
+TEST_CASE(
+    "table draft: what drives thrusters is told by its columns' words, unit and range, or what is missing is said") {
+  using By = recordings::Commanded::By;
+  const auto draft = [](const std::string& header, const std::string& row, By by) {
+    std::string text = "t,u," + header + "\n";
+    for (int k = 0; k < 4; ++k) text += std::to_string(k) + ",1," + row + "\n";
+    return recordings::describe_table(tables::parse_csv(text, "run.csv"), {{"port", by}, {"starboard", by}});
+  };
+  const auto holds = [](const std::string& text, const char* what) { return text.find(what) != std::string::npos; };
+  CHECK(holds(draft("rpm_stbd,rpm_port", "300,400", By::kShaftSpeed),
+              "inputs: {columns: [rpm_port, rpm_stbd], units: [rpm, rpm]}"));
+  CHECK(holds(draft("Left Motor (rpm),Right Motor (rpm),Left Motor Temperature", "300,400,30", By::kForce),
+              "#   speed: {columns: ['Left Motor', 'Right Motor'], unit: rpm, ahead: ..."));
+  CHECK(holds(draft("thrustStarboard_N,thrustPort_N", "3,4", By::kForce),
+              "force: {columns: [thrustPort_N, thrustStarboard_N], unit: N}"));
+  CHECK(holds(draft("cmd_port,cmd_stbd", "0.5,-1", By::kForce), "are shares of full thrust"));
+  CHECK(holds(draft("port,starboard", "5,-10", By::kForce), "have no unit: force (N), speed (rpm) or pwm (us)?"));
+  CHECK(holds(draft("current_port_A,current_stbd_A", "5,10", By::kForce), "without one no model can be fitted"));
 }
 
 }  // namespace fathom
