@@ -8,19 +8,10 @@
 #include <string>
 
 #include "common/model/effect.hpp"
+#include "common/model/hull_in_flow.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::model {
-
-/// Whether its file says that the water's flow along it steers or carries the craft, or that it stands above the water:
-/// rudders, fins, propellers by shaft speed, weights that drive a glider, windage, or, of a boat, that nothing pushes
-/// it sideways. An open frame has no hull that lifts, and each further question about it would only make the answers to
-/// the others less sure.
-[[nodiscard]] inline bool lives_by_flow(const Vehicle& vehicle) {
-  const bool carried =
-      vehicle.dof[1] && !vehicle.dof[2] && vehicle.has_thrusters() && vehicle.allocation.row(1).isZero(1e-6);
-  return vehicle.flow_matters || vehicle.weight_moves || vehicle.windage > 0.0 || carried;
-}
 
 class SpeedProduct final : public Form {
  public:

@@ -12,6 +12,7 @@
 #include "common/model/actuators.hpp"
 #include "common/model/after_abort.hpp"
 #include "common/model/candidates/candidate.hpp"
+#include "common/model/hull_in_flow.hpp"
 #include "common/model/priors/bounded.hpp"
 #include "common/model/priors/proportions.hpp"
 #include "common/model/priors/wide_prior.hpp"
@@ -60,7 +61,6 @@ void read_body(const Config& config, Vehicle& vehicle) {
   if (config.has("buoyancy")) vehicle.buoyancy = positive(config, "buoyancy", "N");
   if (config.has("nominal_voltage")) vehicle.nominal_voltage = positive(config, "nominal_voltage", "V");
   if (config.has("largest_thrust")) vehicle.largest_thrust = positive(config, "largest_thrust", "N");
-  if (config.has("windage")) vehicle.windage = bounded::positive(config, "windage", "m^2");
   if (config.has("hull")) {
     vehicle.hull = bounded::vector3(config, "hull", "m");
     if (vehicle.hull.minCoeff() <= 0.0) config.fail("hull", "'hull' must be positive along every axis");
@@ -72,6 +72,15 @@ void read_body(const Config& config, Vehicle& vehicle) {
   if (2.0 * inertia.maxCoeff() > inertia.sum() * (1.0 + kTriangleTolerance)) {
     config.fail("inertia", "no rigid body has this inertia: the largest moment exceeds the sum of the other two");
   }
+}
+
+void read_windage(const Config& config, Vehicle& vehicle) {
+  if (!config.has("windage")) {
+    vehicle.windage = assumed_windage(vehicle);
+    return;
+  }
+  vehicle.windage = bounded::quantity(config, "windage", "m^2");
+  if (vehicle.windage < 0.0) config.fail("windage", "'windage' must not be negative; 0 m^2: nothing stands out");
 }
 
 ThrustCurve read_curve(const Config& config) {
@@ -270,6 +279,7 @@ Vehicle vehicle_from(const Config& config) {
     check_authority(config, "actuators", vehicle);
   }
   if (vehicle.has_thrusters() && config.has("thrust_curve")) vehicle.curve = read_curve(config.section("thrust_curve"));
+  read_windage(config, vehicle);
   check_proportions(config, vehicle);
   read_parameters(config, vehicle);
   if (config.has("sensors")) {

@@ -88,7 +88,7 @@ struct Vehicle {
   double nominal_voltage{};                          ///< V; 0 when unknown
   double largest_thrust{};                           ///< N, of one thruster, either way; 0 when not stated
   Eigen::Vector3d hull{Eigen::Vector3d::Zero()};     ///< m, length, width, height about Bo; 0 when unknown
-  double windage{};  ///< m^2, side view of what stands above the water; 0: nothing does, or unknown
+  double windage{};                                  ///< m^2, side view of what stands above the water; 0: nothing does
   std::vector<Thruster> thrusters;
   ThrustCurve curve;
   std::vector<std::string>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "common/model/hull_in_flow.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::preflight {
@@ -106,7 +107,9 @@ std::string why_not_asked(const Effect& effect, const Scene& scene) {
   if (has_form(effect, other)) return "not applicable: the base model has it";
   vehicle.windage = 1.0;
   if (has_form(effect, other))
-    return "not applicable: the vehicle file states no rudder, fin, propeller, moved weight or windage";
+    return model::lives_by_flow(*scene.vehicle)
+               ? "not applicable: the vehicle file states no windage"
+               : "not applicable: the vehicle file states no rudder, fin, propeller, moved weight or windage";
   return "not applicable: acts along no simulated axis";
 }
 

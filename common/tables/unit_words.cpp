@@ -57,14 +57,13 @@ std::string_view among(const std::array<Word, N>& words, std::string_view text) 
 
 bool parts(char c) { return c == '_' || c == ' ' || c == '.' || c == '-' || c == '/'; }
 
-/// Takes the last word, lower case, off a name.
-std::string take_last(std::string_view& name) {
+/// Takes the last word, lower case, off a name; `humps`: "yawRateDeg" has three.
+std::string take_last(std::string_view& name, bool humps) {
   while (!name.empty() && parts(name.back())) name.remove_suffix(1);
   std::size_t at = name.size();
   while (at > 0 && !parts(name[at - 1])) {
-    const auto lower = [&](std::size_t i) { return std::islower(static_cast<unsigned char>(name[i])) != 0; };
-    // "yawRateDeg": a word begins with a large letter behind a small one.
-    if (at < name.size() && lower(at - 1) && std::isupper(static_cast<unsigned char>(name[at])) != 0) break;
+    const bool lower = std::islower(static_cast<unsigned char>(name[at - 1])) != 0;
+    if (humps && at < name.size() && lower && std::isupper(static_cast<unsigned char>(name[at])) != 0) break;
     --at;
   }
   std::string word{name.substr(at)};
@@ -72,6 +71,22 @@ std::string take_last(std::string_view& name) {
   name.remove_suffix(name.size() - at);
   while (!name.empty() && parts(name.back())) name.remove_suffix(1);
   return word;
+}
+
+NameWithUnit part_at_end(std::string_view name, bool humps) {
+  std::string_view rest = name;
+  const std::string last = take_last(rest, humps);
+  if (const std::string_view below = among(kBelow, last); !below.empty() && !rest.empty()) {
+    std::string_view before = rest;
+    std::string word = take_last(before, humps);
+    if (word == "per") word = take_last(before, humps);
+    if (const std::string_view above = among(kAbove, word); !above.empty() && !before.empty())
+      return {std::string{before}, std::string{above} + "/" + std::string{below}};
+  }
+  const std::string_view unit = among(kEndings, last);
+  if (!rest.empty()) return {std::string{unit.empty() ? name : rest}, std::string{unit}};
+  const bool shaft = unit == "rpm" || unit == "rps";  // the name itself: of a shaft's speed, not of a length
+  return {std::string{name}, shaft ? std::string{unit} : ""};
 }
 
 }  // namespace
@@ -91,23 +106,8 @@ std::string known_unit(std::string_view text) {
 }
 
 NameWithUnit unit_at_end(std::string_view name) {
-  const std::string_view whole = name;
-  std::string_view rest = name;
-  const std::string last = take_last(rest);
-  if (const std::string_view below = among(kBelow, last); !below.empty() && !rest.empty()) {
-    std::string_view before = rest;
-    std::string word = take_last(before);
-    if (word == "per") word = take_last(before);
-    if (const std::string_view above = among(kAbove, word); !above.empty() && !before.empty())
-      return {std::string{before}, std::string{above} + "/" + std::string{below}};
-  }
-  const std::string_view unit = among(kEndings, last);
-  if (unit.empty()) return {std::string{whole}, ""};
-  if (rest.empty()) {  // the name itself: of a shaft's speed, not of a length
-    const bool shaft = unit == "rpm" || unit == "rps";
-    return {std::string{whole}, shaft ? std::string{unit} : ""};
-  }
-  return {std::string{rest}, std::string{unit}};
+  NameWithUnit parted = part_at_end(name, false);  // "voltage_mV" ends with no V
+  return parted.unit.empty() ? part_at_end(name, true) : parted;
 }
 
 }  // namespace fathom::tables

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/tables/import.hpp"
+#include "common/tables/unit_words.hpp"
 
 namespace fathom {
 namespace {
@@ -161,6 +162,10 @@ TEST_CASE("table draft: names are read by their words and units, however they ar
     CHECK(run.dvl.at(0).v_WB_B == Eigen::Vector3d(0.5, 0.25, 0.0));
     CHECK(run.ahrs.at(0).w_WB_B.z() == doctest::Approx(3.14159265));
   }
+  CHECK(tables::unit_at_end("voltage_mV").unit == "mV");
+  CHECK(tables::unit_at_end("yawRateDeg").name == "yawRate");
+  CHECK(tables::unit_at_end("acc_m_per_s2").unit == "m/s^2");
+  CHECK(tables::unit_at_end("m").unit.empty());
   // What is commanded is no measurement, a revolution a second is none of a craft, and what is of other kinds is
   // nothing.
   const auto described = [&](const std::string& header) {

@@ -1,13 +1,14 @@
 // Physics: steady wind on what stands above the water: w = 1/2 rho_a A_w [C_X |v_a| v_a,x; C_Y |v_a| v_a,y; 0], v_a the
 // wind past the craft, v_a = R_WB^T (W_N, W_E, 0) - v (Fossen 2011, sec. 8.1, with coefficients that go as cosine and
 // sine of the angle; Blendermann 1994 for their size), and the yaw moment N = (arm + shift v_a,x / |v_a|) Y. A_w is the
-// vehicle file's `windage`, the side view. Two laws, of which a craft has one: what stands out is as large from ahead
-// as from the side (a mast, a cabin), and shift is none; or it is the hull's side, from ahead as much smaller as the
-// hull is narrower than long, and the pressure's centre moves toward the end that is blown on (Isherwood 1973: N goes
-// with the sine of twice the angle). Wind speed and direction are numbers to be found; C_X = 0.6 and C_Y = 0.9 are
-// typical and fixed, since the square of the wind takes up what they are wrong by. Ignores: gusts, and the hull's own
-// shelter. Revealed by the same motion on several headings, at rest and at speed. Confused with current (which acts
-// below) and steady_force (which the wind is, while the craft is slow beside it).
+// vehicle file's `windage`, the side view, or half of a boat's hull side where it states none. Two laws, of which a
+// craft has one: what stands out is as large from ahead as from the side (a mast, a cabin), and shift is none; or it is
+// the hull's side, from ahead as much smaller as the hull is narrower than long, and the pressure's centre moves toward
+// the end that is blown on (Isherwood 1973: N goes with the sine of twice the angle). Wind speed and direction are
+// numbers to be found; C_X = 0.6 and C_Y = 0.9 are typical and fixed, since the square of the wind takes up what they
+// are wrong by. Ignores: gusts, and the hull's own shelter. Revealed by the same motion on several headings, at rest
+// and at speed. Confused with current (which acts below) and steady_force (which the wind is, while the craft is slow
+// beside it).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,7 +85,8 @@ class OnTheHullsSide final : public OnWhatStandsOut {
 
 const Effect& wind() {
   static const Effect kEffect{{.name = "wind",
-                               .sentence = "Wind pushes on what stands above the water.",
+                               .sentence = "Wind pushes on what stands above the water; its speed is for the windage "
+                                           "that the vehicle file states, or half of the hull's side.",
                                .revealed_by = "the same motion on several headings, at rest and at full speed",
                                .stage = Stage::kBody,
                                .feels_motion = false},

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/model/dynamics.hpp"
+#include "common/model/vehicle_file.hpp"
 #include "test/support/virtual_dive.hpp"
 
 namespace fathom {
@@ -317,6 +318,25 @@ TEST_CASE("wind: pushes with the square of the wind past the craft, and still ai
         std::vector<std::string>{"alike from all sides", "the hull's side"});
   vehicle.windage = 0.0;
   CHECK(model::find_effect("wind")->variants(scene).empty());
+}
+
+TEST_CASE("wind: is asked of a boat whose file states no windage, unless it says that nothing stands out") {
+  const auto windage = [](const std::string& more) {
+    return model::vehicle_from(
+               Config::parse("name: a\nmass: 55 kg\nwater_density: 1025 kg/m^3\nhull: 2 1 0.5 m\n" + more, "a.yaml"))
+        .windage;
+  };
+  const std::string boat =
+      "dof: [surge, sway, yaw]\nthrusters:\n  - {name: p, position: 0 -0.4 0 m, axis: 1 0 0}\n  - {name: s, position: "
+      "0 0.4 0 m, axis: 1 0 0}\n";
+  CHECK(windage(boat) == doctest::Approx(0.5));
+  CHECK(windage(boat + "windage: 0.2 m^2\n") == 0.2);
+  CHECK(windage(boat + "windage: 0 m^2\n") == 0.0);
+  CHECK_THROWS_AS(static_cast<void>(windage(boat + "windage: -1 m^2\n")), InputError);
+  // What is pushed sideways, and what dives, is none.
+  CHECK(windage(boat + "  - {name: t, position: 0.5 0 0 m, axis: 0 1 0}\n") == 0.0);
+  CHECK(windage("dof: [surge, sway, heave, yaw]\n" + boat.substr(boat.find('\n') + 1) +
+                "  - {name: v, position: 0 0 0 m, axis: 0 0 1}\n") == 0.0);
 }
 
 TEST_CASE("wind: a hull's side takes less of it from ahead, and its centre of pressure goes toward the end blown on") {
