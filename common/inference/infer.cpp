@@ -226,6 +226,8 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
   if (found.best.fit.finite) {
     const Seen seen = see(problem, found.best.fit, settings.threads);
     conclusion.followed = followed(problem, seen);
+    for (std::size_t e = 0; e < found.best.fit.hypothesis.model.effects.size(); ++e)
+      conclusion.modulation.push_back(modulation_of(problem, seen, scene, e, settings.thresholds));
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
       const likelihood::AxisNoise& noise = found.best.fit.noise[axis];
       const int of = problem.axes[axis];

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "common/inference/own_law.hpp"
 #include "common/inference/search.hpp"
 
 namespace fathom::inference {
@@ -36,6 +37,7 @@ struct Conclusion {
   Verdict verdict{Verdict::not_judged};
   std::vector<Reason> reasons;
   Found found;
+  std::vector<Modulation> modulation;  ///< per effect of the best
   std::vector<RandomForce> random;
   std::vector<double> followed;  ///< per simulated axis: share of the acceleration that the model foretells
   /// Axes on which thrust acts and that runs which no fit has seen show to be foretold better than by saying that

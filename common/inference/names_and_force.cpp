@@ -79,13 +79,14 @@ void Searching::takes_the_place(const std::vector<std::size_t>& gone, const Fitt
   judge_effects();
 }
 
-double Searching::size_of(const Seen& seen, std::size_t effect, const Fitted* without) const {
-  double size = size_of_effect(problem_, seen, effect, threads_);
+Size Searching::size_of(const Seen& seen, std::size_t effect, const Fitted* without) const {
+  Size size = size_of_effect(problem_, seen, effect, threads_);
   for (std::size_t i = 0; without != nullptr && without->fit.finite && i < problem_.axes.size(); ++i) {
     const double with_it = seen.fit.noise[i][likelihood::kForce], instead = without->fit.noise[i][likelihood::kForce];
     const double applied = seen.applied[problem_.axes[i]];
-    if (i < static_cast<std::size_t>(problem_.simulated) && instead > with_it && applied > 0.0)
-      size = std::max(size, std::sqrt(instead * instead - with_it * with_it) / applied);
+    if (i >= static_cast<std::size_t>(problem_.simulated) || instead <= with_it || applied <= 0.0) continue;
+    const double share = std::sqrt(instead * instead - with_it * with_it) / applied;
+    if (share > size.share) size = {share, problem_.axes[i], share * applied / with_it};
   }
   return size;
 }
@@ -93,13 +94,16 @@ double Searching::size_of(const Seen& seen, std::size_t effect, const Fitted* wi
 void Searching::judge_effects() {
   found_.odds.clear();
   found_.size.clear();
+  found_.over.clear();
   found_.probability.clear();
   found_.reliability.clear();
   found_.rival.clear();
   if (effects().empty()) return;
   const Seen seen = see(problem_, found_.best.fit, threads_);
   for (std::size_t e = 0; e < effects().size(); ++e) {
-    found_.size.push_back(size_of(seen, e, models_.best_of(names_without(e))));
+    const Size size = size_of(seen, e, models_.best_of(names_without(e)));
+    found_.size.push_back(size.share);
+    found_.over.push_back(size.over);
     const Standing standing =
         models_.standing(found_.best, found_.base.score, std::string(effects()[e].effect->name()), small_);
     found_.probability.push_back(standing.probability);

@@ -52,14 +52,6 @@ struct Scan {
 /// Whether its score has more than one place to begin from.
 [[nodiscard]] bool shaped(const Law& law);
 
-/// Share of the applied acceleration that an effect of the seen model adds, least squares on the base numbers' columns
-/// taken out, on its worst axis. An effect on the sensors: of the velocity.
-[[nodiscard]] double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect,
-                                    int threads = 1);
-/// The same of an effect that the seen model does not hold, if it had it.
-[[nodiscard]] double size_beside(const likelihood::Problem& problem, const Seen& seen,
-                                 const model::ActiveEffect& active);
-
 /// Accelerations that an effect adds to a hypothesis at the seen model's filtered velocities: axes x blocks, `shown`
 /// likewise.
 class EffectColumns {
@@ -94,9 +86,17 @@ class EffectColumns {
 struct Size {
   double share{};
   int axis{};
+  double over{};  ///< the same rms over the random force that the seen model has on that axis
 };
 [[nodiscard]] Size size_of(const likelihood::Problem& problem, const Seen& seen,
                            const std::vector<Eigen::MatrixXd>& accelerations);
+/// Share of the applied acceleration that an effect of the seen model adds, least squares on the base numbers' columns
+/// taken out, on its worst axis. An effect on the sensors: of the velocity, on no axis (-1).
+[[nodiscard]] Size size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect,
+                                  int threads = 1);
+/// The same of an effect that the seen model does not hold, if it had it.
+[[nodiscard]] double size_beside(const likelihood::Problem& problem, const Seen& seen,
+                                 const model::ActiveEffect& active);
 /// The same of what is missing in the seen model, whose random force has taken its place: on no axis is it larger than
 /// that, whatever its parts come to that undo each other.
 [[nodiscard]] Size size_of_missing(const likelihood::Problem& problem, const Seen& seen,

@@ -267,7 +267,7 @@ bool Searching::counts(const Fitted& fitted) {
   const auto fresh = std::ranges::count_if(those, [&](const auto& active) { return !held(effects(), active); });
   for (std::size_t e = 0; e < those.size(); ++e) {
     if (held(effects(), those[e])) continue;
-    const double size = size_of(seen, e, fresh == 1 && those.size() > effects().size() ? &found_.best : nullptr);
+    const double size = size_of(seen, e, fresh == 1 && those.size() > effects().size() ? &found_.best : nullptr).share;
     const bool at_limit = stopped(those[e], scene_);
     if (!at_limit && (size >= thresholds_.smallest_size || by_nature(those[e]))) continue;
     failed_[std::string(those[e].effect->name())] =
@@ -324,7 +324,7 @@ void Searching::drop() {
     std::vector<std::size_t> which;
     for (std::size_t e = 0; e < effects().size(); ++e) {
       if (stopped(effects()[e], scene_) ||
-          (!by_nature(effects()[e]) && size_of(seen, e, nullptr) < thresholds_.smallest_size)) {
+          (!by_nature(effects()[e]) && size_of(seen, e, nullptr).share < thresholds_.smallest_size)) {
         small.push_back(without(found_.best, e));
         which.push_back(e);
       } else if (guessed_loss(seen, e) < kDoubtful * thresholds_.name_odds) {
@@ -333,7 +333,7 @@ void Searching::drop() {
     }
     std::vector<Fitted> fits = models_.fit_all(small);
     for (std::size_t k = fits.size(); k-- > 0;) {
-      if (stopped(effects()[which[k]], scene_) || size_of(seen, which[k], &fits[k]) < thresholds_.smallest_size)
+      if (stopped(effects()[which[k]], scene_) || size_of(seen, which[k], &fits[k]).share < thresholds_.smallest_size)
         continue;
       fits.erase(fits.begin() + static_cast<std::ptrdiff_t>(k));
       small.erase(small.begin() + static_cast<std::ptrdiff_t>(k));

@@ -27,7 +27,8 @@ struct Refused {
 struct Found {
   Fitted base, best;
   std::vector<double> odds;         ///< per effect of the best: nats over the best without it
-  std::vector<double> size;         ///< per effect
+  std::vector<double> size;         ///< per effect: share of the applied force, on its worst axis
+  std::vector<double> over;         ///< per effect: its force over what is left beside it (Size::over)
   std::vector<double> probability;  ///< per effect: of its name among all that was fitted
   std::vector<double> reliability;  ///< per effect: how often names of such odds are right
   std::vector<std::string> rival;   ///< per effect: the likeliest other name in its place; empty: none came near

@@ -86,7 +86,7 @@ class Searching {
   /// Share of the applied acceleration that an effect of the seen model does, on the worst axis: what base numbers
   /// cannot do in its place, or, where `without` it is known, the random force that takes its place there. Numbers that
   /// two axes share can do in one what it does and not in the other, and random forces then take the rest.
-  [[nodiscard]] double size_of(const Seen& seen, std::size_t effect, const Fitted* without) const;
+  [[nodiscard]] Size size_of(const Seen& seen, std::size_t effect, const Fitted* without) const;
   /// A race among forms and maxima of one name: what does not beat the best model tells nothing.
   [[nodiscard]] Odds better() const;
   /// Other forms of the effects that were just found, begun from their shared numbers, where the score promised at

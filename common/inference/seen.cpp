@@ -129,8 +129,10 @@ Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::ve
                                         return p - offsets;
                                       }));
     const int axis = problem.axes[static_cast<std::size_t>(i)];
-    const double share = std::min(std::sqrt(left / count), most[i]) / std::max(seen.applied[axis], 1e-9);
-    if (share > worst.share) worst = {share, axis};
+    const double rms = std::min(std::sqrt(left / count), most[i]);
+    const double share = rms / std::max(seen.applied[axis], 1e-9);
+    const double random = seen.fit.noise[static_cast<std::size_t>(i)][likelihood::kForce];
+    if (share > worst.share) worst = {share, axis, random > 0.0 ? rms / random : 0.0};
   }
   return worst;
 }
@@ -188,22 +190,21 @@ double size_beside(const likelihood::Problem& problem, const Seen& seen, const m
                                                                     : size_of(problem, seen, added.accelerations).share;
 }
 
-double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect, int threads) {
+Size size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect, int threads) {
   // The model without it, with what it adds as a column.
   likelihood::Hypothesis without = seen.fit.hypothesis;
   const model::ActiveEffect active = without.model.effects[effect];
   without.model.effects.erase(without.model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
   const Added added = added_by(problem, seen, without, active);
-  if (likelihood::stage_of(active) == likelihood::Stage::kSensor) return added.shown;
-  if (likelihood::stage_of(active) != likelihood::Stage::kHull)
-    return size_of(problem, seen, added.accelerations).share;
+  if (likelihood::stage_of(active) == likelihood::Stage::kSensor) return {added.shown, -1};
+  if (likelihood::stage_of(active) != likelihood::Stage::kHull) return size_of(problem, seen, added.accelerations);
   // What base numbers alone can do. Beside an effect that couples axes they move axes that are not theirs, through the
   // very inertia that is asked about.
   Seen rest{.fit = seen.fit, .applied = seen.applied};
   rest.fit.hypothesis = without;
   rest.fit.numbers = problem.numbers(without);
   likelihood::refer(problem, rest.fit, rest.reference, threads);
-  return size_of(problem, rest, added.accelerations).share;
+  return size_of(problem, rest, added.accelerations);
 }
 
 }  // namespace fathom::inference

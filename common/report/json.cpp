@@ -109,6 +109,8 @@ Json stand_ins(const std::vector<StandIn>& found) {
                      {"variant", one.variant},
                      {"in_model", one.in_model},
                      {"size", number_or_null(one.size)},
+                     {"over", number_or_null(one.over)},
+                     {"modulation", number_or_null(one.modulation)},
                      {"parameters", named(one.parameters)}});
   return array;
 }

@@ -146,7 +146,7 @@ std::string causes(const DiagnosisResult& result) {
       continue;
     }
     items += "<li>A stand-in, no cause: " + escape(effect_title(one.name, one.variant)) + " <span class=\"soft\">" +
-             escape(percent(one.size)) + " of the applied force; lowers the error on what was not fitted</span></li>\n";
+             escape(size_beside_rest(one.size, one.over)) + "; lowers the error on what was not fitted</span></li>\n";
   }
   if (!refused.empty())
     items += "<li><span class=\"soft\">Stand-ins that were tried and not taken, since the error does not fall: " +

@@ -125,7 +125,7 @@ void stand_ins(Text& out, const DiagnosisResult& result) {
   if (result.stand_ins.empty()) return;
   out.title("Stand-ins: no cause is claimed");
   for (const StandIn& one : result.stand_ins) {
-    out.paragraph(effect_title(one.name, one.variant) + ": " + percent(one.size) + " of the applied force; " +
+    out.paragraph(effect_title(one.name, one.variant) + ": " + size_beside_rest(one.size, one.over) + "; " +
                   (one.in_model ? "it lowers the error on what was not fitted, so the model has it"
                                 : "it does not lower the error on what was not fitted, so the model lacks it"));
     for (const NamedValue& value : one.parameters) out.paragraph(value.name + " = " + with_interval(value), "      ");

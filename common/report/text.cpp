@@ -110,6 +110,12 @@ std::string odds(double log_odds) {
 
 std::string log_odds_text(double log_odds) { return number(std::abs(log_odds) < 0.01 ? 0.0 : log_odds); }
 
+std::string size_beside_rest(double share, double over) {
+  std::string words = percent(share) + " of the applied force";
+  if (over > 0.0) words += ", " + number(over, 2) + " times what is left there";
+  return words;
+}
+
 std::string effect_title(const std::string& name, const std::string& variant) {
   std::string title = name;
   if (!name.starts_with("column ")) std::ranges::replace(title, '_', ' ');

@@ -46,6 +46,8 @@ extern const std::array<Axis, 6> kAxes;
 [[nodiscard]] std::string log_odds_text(double log_odds);
 /// "thruster_lag", "thruster 3" become "thruster lag (thruster 3)".
 [[nodiscard]] std::string effect_title(const std::string& name, const std::string& variant = "");
+/// "97 % of the applied force, 3.1 times what is left there": the latter where it is known (0: not).
+[[nodiscard]] std::string size_beside_rest(double share, double over);
 /// "value ± half width of the 95 % interval unit", or "value (low to high) unit" where the sides differ.
 [[nodiscard]] std::string with_interval(const NamedValue& value);
 [[nodiscard]] std::string join(const std::vector<std::string>& parts, std::string_view separator);

@@ -93,8 +93,8 @@ void evidence(Lines& out, const Stored& stored) {
       out.line("or " + other.name + ": " + report::odds(other.log_odds) + " against it", "", 6);
   }
   for (const StandIn& one : stored.result.stand_ins)
-    out.line(report::effect_title(one.name, one.variant) + ": a stand-in for something unlisted, " + percent(one.size) +
-                 " of the applied force; " +
+    out.line(report::effect_title(one.name, one.variant) + ": a stand-in for something unlisted, " +
+                 report::size_beside_rest(one.size, one.over) + "; " +
                  (one.in_model ? "in the model" : "not in the model: the error does not fall with it"),
              "  ~ ");
   std::size_t told = 0, more = 0;

@@ -120,7 +120,7 @@ void read_diagnosis(const Json& file, DiagnosisResult& result) {
   for (const Json& e : file.at("effects")) result.effects.push_back(effect(e));
   for (const Json& s : list(file, "stand_ins"))
     result.stand_ins.push_back({text(s, "name"), text(s, "variant"), s.value("in_model", false), real(s, "size"),
-                                numbers(s.at("parameters"))});
+                                real(s, "over"), real(s, "modulation"), numbers(s.at("parameters"))});
   for (const Json& c : file.at("candidates"))
     result.candidates.push_back({text(c, "name"), text(c, "variant"), real(c, "log_odds"), text(c, "reason")});
   for (const Json& g : list(file, "not_measured"))

@@ -95,8 +95,10 @@ struct EffectFound {
 /// the numbers, as a learned force is.
 struct StandIn {
   std::string name, variant;
-  bool in_model{};  ///< it lowers the error on runs that no fit has seen, so the model after has it
-  double size{};    ///< share of the applied acceleration, on its worst axis
+  bool in_model{};      ///< it lowers the error on runs that no fit has seen, so the model after has it
+  double size{};        ///< share of the applied acceleration, on its worst axis
+  double over{};        ///< its force over what is left beside it on that axis; 0: not known
+  double modulation{};  ///< rms by which its strength changes, as a share of it, with what else goes on; 0: not
   std::vector<NamedValue> parameters;
 };
 

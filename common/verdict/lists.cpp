@@ -53,7 +53,8 @@ void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, cons
   for (std::size_t e = 0; e < effects.size() && e < found.odds.size(); ++e) {
     const std::string name{effects[e].effect->name()}, &form = effects[e].variant_name;
     if (!names_claim(conclusion.verdict)) {
-      result.stand_ins.push_back({name, form, in_model, found.size[e], numbers_of_effect(fit, e, sigma)});
+      result.stand_ins.push_back({name, form, in_model, found.size[e], found.over[e], conclusion.modulation[e].depth,
+                                  numbers_of_effect(fit, e, sigma)});
       result.candidates.push_back({name, form, found.odds[e], "stand-in"});
       continue;
     }

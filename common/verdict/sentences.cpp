@@ -43,11 +43,13 @@ std::string names(const Conclusion& conclusion) {
 /// Without odds, which mean nothing beside something unlisted.
 std::string stand_ins(const Conclusion& conclusion) {
   std::string all;
-  const auto& effects = conclusion.found.best.fit.hypothesis.model.effects;
+  const inference::Found& found = conclusion.found;
+  const auto& effects = found.best.fit.hypothesis.model.effects;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     all += (e > 0 ? ", " : "") + title(std::string(effects[e].effect->name()));
     if (!effects[e].variant_name.empty()) all += " (" + effects[e].variant_name + ")";
-    all += ": " + percent(conclusion.found.size[e]) + " of the applied force";
+    all += ": " + percent(found.size[e]) + " of the applied force";
+    if (found.over[e] > 0.0) all += text(", %.2g times what is left there", found.over[e]);
   }
   return all;
 }

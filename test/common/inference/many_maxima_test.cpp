@@ -75,7 +75,7 @@ TEST_CASE("many maxima: a coupling of inertias has its size, though base numbers
     count += static_cast<double>(reference.nu_dot.cols());
   }
   const double expected = 0.1 * std::sqrt(pushed / count) / seen.applied[5];
-  CHECK(size_of_effect(problem, seen, 0) > 0.5 * expected);
+  CHECK(size_of_effect(problem, seen, 0).share > 0.5 * expected);
 }
 
 TEST_CASE("many maxima: what was refused for a limit is no rival of what was found, and what is too small to matter is") {

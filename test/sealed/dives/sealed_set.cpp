@@ -12,6 +12,7 @@ constexpr double kValidation = 165.0;  // s
 constexpr double kCloseEnough = 0.04;  // of the share that is aimed at
 constexpr double kReached = 0.10;
 constexpr int kTries = 14;
+constexpr int kDraws = 100;
 
 struct Turn {
   Kind kind;
@@ -32,8 +33,9 @@ std::vector<Turn> round_of(CraftClass craft_class) {
   return turns;
 }
 
+bool sensor(const Entry& e) { return e.name.starts_with("sensor_") || e.name == "lever_arm"; }
+
 bool goes_together(const Entry& a, const Entry& b) {
-  const auto sensor = [](const Entry& e) { return e.name.starts_with("sensor_") || e.name == "lever_arm"; };
   const bool same = a.name == b.name || (sensor(a) && sensor(b));
   const auto either = [&](const char* x, const char* y) {
     return (a.name == x && b.name == y) || (a.name == y && b.name == x);
@@ -135,6 +137,20 @@ void draw_vehicle(const Needs& needs, Random& random, SealedSet& set) {
   set.site.centre << random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), set.site.half.z() + random.uniform(0.6, 2.0);
 }
 
+std::vector<const Entry*> mixed(const std::vector<const Entry*>& listed, const std::vector<const Entry*>& foreign,
+                                Random& random) {
+  const auto any_of = [&](const std::vector<const Entry*>& list) {
+    return list[static_cast<std::size_t>(random.below(static_cast<int>(list.size())))];
+  };
+  std::vector<const Entry*> chosen{any_of(listed), any_of(listed), any_of(foreign)};
+  const auto clash = [&] { return !goes_together(*chosen[0], *chosen[1]) || sensor(*chosen[2]); };
+  for (int i = 0; i < kDraws && clash(); ++i) {
+    chosen[1] = any_of(listed);
+    chosen[2] = any_of(foreign);
+  }
+  return chosen;
+}
+
 }  // namespace
 
 Plan make_plan(std::uint64_t seed, const Wish& wish) {
@@ -189,6 +205,11 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
       while (!goes_together(*chosen[0], *chosen[1])) chosen[1] = any_of(listed_here);
       if (!wish.size && plan.size == Size::kWeak) plan.size = Size::kMedium;
       break;
+    case Kind::kMixed:
+      chosen = mixed(listed_here, foreign_of(wish.craft_class), random);
+      for (std::size_t i = 0; i < chosen.size(); ++i)
+        plan.sizes.push_back(static_cast<Size>(random.below(static_cast<int>(kShares.size()))));
+      break;
   }
   if (wish.size) plan.size = *wish.size;
   bool thrusters = false, clock = false;
@@ -230,9 +251,12 @@ SealedSet make_set(const Plan& plan) {
     const Entry* entry = find_entry(name);
     set.mechanisms.push_back(entry->make(name, set.craft, set.site, details));
   }
-  const double target = kShares[static_cast<std::size_t>(plan.size)];
+  const auto target_of = [&](std::size_t i) {
+    return kShares[static_cast<std::size_t>(plan.sizes.empty() ? plan.size : plan.sizes[i])];
+  };
   set.clean_fit = fit_base(set.craft, clean);
   for (std::size_t i = 0; i < set.mechanisms.size(); ++i) {
+    const double target = target_of(i);
     set.shares.push_back(scale(set, i, target));
     set.reached = set.reached && std::abs(set.shares.back() - target) < kReached * target;
   }

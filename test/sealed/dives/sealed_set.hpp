@@ -7,15 +7,16 @@
 
 namespace fathom::sealed {
 
-enum class Kind { kSingle, kClean, kNoise, kPair, kForeign };
+/// kMixed: two listed effects beside one that no list holds, each of a size of its own, as real craft have them.
+enum class Kind { kSingle, kClean, kNoise, kPair, kForeign, kMixed };
 enum class Size { kWeak, kMedium, kStrong };
-constexpr std::array<const char*, 5> kKindNames{"single", "clean", "noise", "pair", "foreign"};
+constexpr std::array<const char*, 6> kKindNames{"single", "clean", "noise", "pair", "foreign", "mixed"};
 constexpr std::array<const char*, 3> kSizeNames{"weak", "medium", "strong"};
 constexpr std::array<double, 3> kShares{0.05, 0.15, 0.40};  ///< of the applied wrench
 
 /// What the caller wants instead of what the number would draw.
 struct Wish {
-  std::string effect;  ///< or "clean", "pair", "foreign", "single"; "unlisted": one of those in turn
+  std::string effect;  ///< or "clean", "pair", "foreign", "single", "mixed"; "unlisted": one of those in turn
   std::optional<Size> size;
   CraftClass craft_class{};
   bool new_recording{false};  ///< a file for validation in any case
@@ -27,6 +28,7 @@ struct Plan {
   Size size{};
   CraftClass craft_class{};
   std::vector<std::string> names;
+  std::vector<Size> sizes{};  ///< of each of `names` where they differ; else all are of `size`
   bool one_clock{};  ///< time goes on from file to file; else every file (and what depends on time) begins at zero
   int train_files{1};
   bool validates{true};  ///< false: one long file, the tool has to keep a part for itself

@@ -145,6 +145,23 @@ TEST_CASE("sealed set: 123 numbers in a row draw every effect in every size, and
   for (const Kind kind : {Kind::kClean, Kind::kNoise, Kind::kPair, Kind::kForeign}) CHECK(kinds[kind] >= 6);
 }
 
+TEST_CASE("sealed set: two effects of the list beside one of no list, each of its own size") {
+  std::set<Size> sizes;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const Plan plan = make_plan(seed, {.effect = "mixed"});
+    REQUIRE(plan.names.size() == 3);
+    REQUIRE(plan.sizes.size() == 3);
+    const auto among = [](const std::vector<Entry>& list, const std::string& name) {
+      return std::ranges::find(list, name, &Entry::name) != list.end();
+    };
+    CHECK(among(catalogue(), plan.names[0]));
+    CHECK(among(catalogue(), plan.names[1]));
+    CHECK(among(foreign(), plan.names[2]));
+    sizes.insert(plan.sizes.begin(), plan.sizes.end());
+  }
+  CHECK(sizes.size() == kShares.size());
+}
+
 TEST_CASE("sealed set: nobody beats the true simulator, and more signals never widen the bound") {
   const SealedSet clean = set_of(8, "clean", Size::kMedium);
   const Bound bound = cramer_rao(clean);

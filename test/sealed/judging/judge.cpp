@@ -84,7 +84,8 @@ std::string outcome_of(const Score& score, const std::vector<Named>& named) {
                                             : "hesitant";
   }
   if (named.empty()) return "missed";
-  if (score.kind == "pair") {
+  if (score.kind == "pair" || score.kind == "mixed") {
+    if (score.kind == "mixed" && score.strangers > 0) return "wrong";
     const auto right = std::count_if(score.truth.begin(), score.truth.end(), covered);
     return right == 2 ? "whole" : right == 1 ? "half" : "wrong";
   }
@@ -233,7 +234,7 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
   }
   score.outcome = outcome_of(score, named);
   const Names wished{"named", "alias", "whole", "silent", "refused", "unexplained"};
-  score.good = contains(wished, score.outcome);
+  score.good = contains(wished, score.outcome) || (score.kind == "mixed" && score.outcome == "half");
   const std::string first = score.truth.empty() ? "" : score.truth.front();
   for (const Json& finding : result.at("consistency")) {
     const std::string what = finding.at("finding");

@@ -23,8 +23,9 @@ struct Score {
   std::vector<std::string> truth;  ///< names
   std::vector<std::string> found;  ///< accepted names, in the tool's order
   std::string verdict;
-  /// single: named, alias, later, missed, wrong.  pair: whole, half, missed, wrong.  clean and noise: silent, false
-  /// alarm.  foreign: refused, hesitant, wrong name.  Any: failed.
+  /// single: named, alias, later, missed, wrong.  pair and mixed: whole, half, missed, wrong (mixed: also where a wrong
+  /// name stands beside right ones).  clean and noise: silent, false alarm.  foreign: refused, hesitant, wrong name.
+  /// Any: failed.
   std::string outcome;
   bool good{};             ///< the outcome that is wished
   int strangers{};         ///< accepted names that are not in the truth nor an alias of it

@@ -88,6 +88,15 @@ TEST_CASE("judge: pairs, silence and strangers") {
   CHECK(judged(foreign, {effect("current")}, "unexplained").outcome == "wrong name");
 }
 
+TEST_CASE("judge: beside something of no list right names are good, and a wrong one spoils them") {
+  const Json mixed = truth_of("mixed", {"current", "thruster_lag", "rope_wrapping"});
+  CHECK(judged(mixed, {effect("current"), effect("thruster_lag")}, "unexplained").outcome == "whole");
+  CHECK(judged(mixed, {effect("current")}, "unexplained").outcome == "half");
+  CHECK(judged(mixed, {effect("current")}, "unexplained").good);
+  CHECK(judged(mixed, {}, "unexplained").outcome == "missed");
+  CHECK(judged(mixed, {effect("current"), effect("wave")}, "unexplained").outcome == "wrong");
+}
+
 TEST_CASE("judge: the right name for the wrong thruster is seen") {
   Json truth = truth_of("single", {"thruster_gain"}), found = effect("thruster_gain");
   truth["effects"][0]["form"] = "T1";

@@ -93,6 +93,15 @@ void add_targets(std::span<const Score> scores, std::string& text) {
           good_of(scores, [](const Score& s) { return s.kind == "pair" && s.size == "medium"; }));
   add_row(text, "pair found whole, other sizes", "-",
           good_of(scores, [](const Score& s) { return s.kind == "pair" && s.size != "medium"; }));
+  const Filter mixed = [](const Score& s) { return s.kind == "mixed"; };
+  add_row(text, "two listed effects beside one of no list: one or both named, and nothing else", "-",
+          good_of(scores, mixed));
+  add_row(text, "the same: both named", "-",
+          percent(std::ranges::count_if(scores, [&](const Score& s) { return mixed(s) && s.outcome == "whole"; }),
+                  std::ranges::count_if(scores, mixed)));
+  add_row(text, "the same: a wrong name accepted", "-",
+          percent(std::ranges::count_if(scores, [&](const Score& s) { return mixed(s) && s.outcome == "wrong"; }),
+                  std::ranges::count_if(scores, mixed)));
   long strangers = 0, sets = 0, alarms = 0, quiet = 0, failed = 0, foreign = 0, named = 0, refused = 0, worse = 0,
        compared = 0, adequate = 0, unexplained = 0;
   for (const Score& s : scores) {
