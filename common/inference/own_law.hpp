@@ -7,10 +7,11 @@
 
 namespace fathom::inference {
 
-/// How the strength of a name's force changes where it may go with depth, place, heading, speed, its own size or time.
+/// How the strength of a name's force changes where it may go with depth, place, heading, speed, its own size or time:
+/// with that of them, among those that are worth anything, with which it changes most.
 struct Modulation {
-  double nats{};     ///< of the best, after its price; 0: none is worth anything
-  double depth{};    ///< rms of the change of its strength, as a share of it; of what is worth anything the largest
+  double nats{};     ///< after its price; 0: none is worth anything
+  double depth{};    ///< rms of the change of its strength, as a share of it
   std::string by{};  ///< "depth"
 };
 

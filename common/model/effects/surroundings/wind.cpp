@@ -85,8 +85,7 @@ class OnTheHullsSide final : public OnWhatStandsOut {
 
 const Effect& wind() {
   static const Effect kEffect{{.name = "wind",
-                               .sentence = "Wind pushes on what stands above the water; its speed is for the windage "
-                                           "that the vehicle file states, or half of the hull's side.",
+                               .sentence = "Wind pushes on what stands above the water.",
                                .revealed_by = "the same motion on several headings, at rest and at full speed",
                                .stage = Stage::kBody,
                                .feels_motion = false},
