@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
 #include "common/model/dynamics.hpp"
 #include "common/model/vehicle_file.hpp"
 #include "test/support/virtual_dive.hpp"
