@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "common/base/factors.hpp"
 #include "common/inference/feature_columns.hpp"
@@ -17,6 +18,13 @@ constexpr int kTurns = 5;   // of the variances
 constexpr int kBatch = 48;  // columns that pass through the filter together
 
 }  // namespace
+
+Projected project(const Seen& seen, const likelihood::ResponseSums& sums) {
+  const Eigen::MatrixXd& X = sums.with_numbers;
+  Projected projected{sums.gram.selfadjointView<Eigen::Lower>(), sums.gradient - X.transpose() * seen.step};
+  projected.gram -= X.transpose() * (seen.covariance * X);
+  return projected;
+}
 
 Screen screen(const likelihood::Problem& problem, const Seen& seen, const likelihood::FreeForce& library,
               const std::vector<std::size_t>& groups, bool all) {
@@ -38,10 +46,9 @@ Screen screen(const likelihood::Problem& problem, const Seen& seen, const likeli
         },
         sums);
   }
-  const Eigen::MatrixXd X = sums.with_numbers;
-  screen.gram = sums.gram.selfadjointView<Eigen::Lower>();
-  screen.gram -= X.transpose() * (seen.covariance * X);
-  screen.gradient = sums.gradient - X.transpose() * seen.step;  // the numbers move along
+  Projected projected = project(seen, sums);
+  screen.gram = std::move(projected.gram);
+  screen.gradient = std::move(projected.gradient);
   return screen;
 }
 

@@ -19,6 +19,13 @@ struct Screen {
   Eigen::VectorXd gradient;
 };
 
+/// Sums over columns with the model's own numbers projected out: they move along with what is asked.
+struct Projected {
+  Eigen::MatrixXd gram;
+  Eigen::VectorXd gradient;
+};
+[[nodiscard]] Projected project(const Seen& seen, const likelihood::ResponseSums& sums);
+
 /// Of these groups of the library. `all`: products between groups too.
 [[nodiscard]] Screen screen(const likelihood::Problem& problem, const Seen& seen, const likelihood::FreeForce& library,
                             const std::vector<std::size_t>& groups, bool all);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "common/inference/feature_screen.hpp"
@@ -18,10 +17,8 @@ constexpr double kSmallestRange = 0.05;  // m
 constexpr double kMoves = 1e-3;          // m/s, rad/s
 constexpr double kStartDepth = 0.3;      // of a modulation, before its variance is known
 
-struct Group {
-  std::string by;
-  std::vector<Feature> columns;  ///< empty: the force's own size
-};
+/// What modulates together; empty: the force's own size.
+using Group = std::vector<Feature>;
 
 std::vector<Group> groups_of(const likelihood::Problem& problem, const model::Scene& scene) {
   const auto feature = [](const std::vector<Factor>& factors) {
@@ -32,33 +29,30 @@ std::vector<Group> groups_of(const likelihood::Problem& problem, const model::Sc
   const auto of = [](Quantity quantity, int index, double a, double b) {
     return Factor{.quantity = quantity, .index = index, .a = a, .b = b};
   };
-  std::vector<Group> groups{{"its own size", {}}};
+  std::vector<Group> groups{Group{}};
   const Eigen::Vector3d middle = 0.5 * (scene.p_low + scene.p_high), room = 0.5 * (scene.p_high - scene.p_low);
   if (scene.position && 2.0 * room.z() > kSmallestRange) {
     const Factor depth = of(Quantity::kDepth, 0, middle.z(), room.z());
-    groups.push_back({"depth", {feature({depth}), feature({depth, depth}), feature({depth, depth, depth})}});
+    groups.push_back({feature({depth}), feature({depth, depth}), feature({depth, depth, depth})});
   }
   if (scene.position && room.head<2>().minCoeff() > 0.5 * kSmallestRange) {
     const Factor north = of(Quantity::kNorth, 0, middle.x(), room.x()),
                  east = of(Quantity::kEast, 0, middle.y(), room.y());
     groups.push_back(
-        {"place",
-         {feature({north}), feature({east}), feature({north, north}), feature({north, east}), feature({east, east})}});
+        {feature({north}), feature({east}), feature({north, north}), feature({north, east}), feature({east, east})});
   }
   if (scene.attitude)
     groups.push_back(
-        {"heading",
-         {feature({of(Quantity::kHeadingCosine, 1, 0.0, 1.0)}), feature({of(Quantity::kHeadingSine, 1, 0.0, 1.0)})}});
-  groups.push_back({"the speed", {feature({Factor{.quantity = Quantity::kFlowSpeed}})}});
+        {feature({of(Quantity::kHeadingCosine, 1, 0.0, 1.0)}), feature({of(Quantity::kHeadingSine, 1, 0.0, 1.0)})});
+  groups.push_back({feature({Factor{.quantity = Quantity::kFlowSpeed}})});
   for (int j = 0; j < 6; ++j) {
     if (scene.nu_rms[j] <= kMoves) continue;
-    groups.push_back({std::string{model::kVelocityNames[static_cast<std::size_t>(j)]},
-                      {feature({Factor{.quantity = Quantity::kVelocity, .index = j}}),
-                       feature({Factor{.quantity = Quantity::kSpeed, .index = j}})}});
+    groups.push_back({feature({Factor{.quantity = Quantity::kVelocity, .index = j}}),
+                      feature({Factor{.quantity = Quantity::kSpeed, .index = j}})});
   }
   const double half = std::max(0.5 * (problem.t_high - problem.t_low), 1.0);
   const Factor ramp = of(Quantity::kRamp, 0, 0.5 * (problem.t_low + problem.t_high), half);
-  groups.push_back({"time", {feature({ramp}), feature({ramp, ramp})}});
+  groups.push_back({feature({ramp}), feature({ramp, ramp})});
   return groups;
 }
 
@@ -94,8 +88,8 @@ Table table_of(const likelihood::Problem& problem, const Seen& seen, std::size_t
     }
     Eigen::Index at = 0;
     for (const Group& group : groups) {
-      if (group.columns.empty()) table.by(at++, b) = std::sqrt(size);
-      for (const Feature& column : group.columns) table.by(at++, b) = column.value(state);
+      if (group.empty()) table.by(at++, b) = std::sqrt(size);
+      for (const Feature& column : group) table.by(at++, b) = column.value(state);
     }
     plant.end_block(block, reference.nu_end.col(b));
   }
@@ -133,7 +127,7 @@ Modulation modulation_of(const likelihood::Problem& problem, const Seen& seen, c
   std::vector<ColumnRange> ranges;
   std::size_t columns = 0;
   for (const Group& group : groups) {
-    const std::size_t count = std::max<std::size_t>(group.columns.size(), 1);
+    const std::size_t count = std::max<std::size_t>(group.size(), 1);
     ranges.emplace_back(static_cast<Eigen::Index>(columns), static_cast<Eigen::Index>(count));
     columns += count;
   }
@@ -151,10 +145,7 @@ Modulation modulation_of(const likelihood::Problem& problem, const Seen& seen, c
         },
         sums);
   }
-  const Eigen::MatrixXd X = sums.with_numbers;
-  Eigen::MatrixXd gram = sums.gram.selfadjointView<Eigen::Lower>();
-  gram -= X.transpose() * (seen.covariance * X);
-  const Eigen::VectorXd gradient = sums.gradient - X.transpose() * seen.step;  // the numbers move along
+  const auto [gram, gradient] = project(seen, sums);
   Modulation most;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const GroupEvidence evidence = group_evidence(gram, gradient, std::span{&ranges[g], 1}, {kStartDepth});
@@ -162,7 +153,7 @@ Modulation modulation_of(const likelihood::Problem& problem, const Seen& seen, c
         evidence.log_bayes_factor - thresholds.group_price - std::log(static_cast<double>(groups.size()));
     if (!(nats > 0.0)) continue;
     const double depth = evidence.weight.norm();
-    if (depth > most.depth) most = {nats, depth, groups[g].by};
+    if (depth > most.depth) most = {nats, depth};
   }
   return most;
 }

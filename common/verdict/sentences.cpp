@@ -49,7 +49,8 @@ std::string stand_ins(const Conclusion& conclusion) {
     all += (e > 0 ? ", " : "") + title(std::string(effects[e].effect->name()));
     if (!effects[e].variant_name.empty()) all += " (" + effects[e].variant_name + ")";
     all += ": " + percent(found.size[e]) + " of the applied force";
-    if (found.over[e] > 0.0) all += text(", %.2g times what is left there", found.over[e]);
+    const double over = found.over[e];
+    if (over > 0.0) all += text(", %.*f times what is left there", over < 1.0 ? 2 : over < 10.0 ? 1 : 0, over);
   }
   return all;
 }
