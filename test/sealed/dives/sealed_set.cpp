@@ -12,7 +12,6 @@ constexpr double kValidation = 165.0;  // s
 constexpr double kCloseEnough = 0.04;  // of the share that is aimed at
 constexpr double kReached = 0.10;
 constexpr int kTries = 14;
-constexpr int kDraws = 100;
 
 struct Turn {
   Kind kind;
@@ -143,8 +142,7 @@ std::vector<const Entry*> mixed(const std::vector<const Entry*>& listed, const s
     return list[static_cast<std::size_t>(random.below(static_cast<int>(list.size())))];
   };
   std::vector<const Entry*> chosen{any_of(listed), any_of(listed), any_of(foreign)};
-  const auto clash = [&] { return !goes_together(*chosen[0], *chosen[1]) || sensor(*chosen[2]); };
-  for (int i = 0; i < kDraws && clash(); ++i) {
+  while (!goes_together(*chosen[0], *chosen[1]) || sensor(*chosen[2])) {
     chosen[1] = any_of(listed);
     chosen[2] = any_of(foreign);
   }
@@ -207,7 +205,7 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
       break;
     case Kind::kMixed:
       chosen = mixed(listed_here, foreign_of(wish.craft_class), random);
-      for (std::size_t i = 0; i < chosen.size(); ++i)
+      for (std::size_t i = 0; i < chosen.size() && !wish.size; ++i)
         plan.sizes.push_back(static_cast<Size>(random.below(static_cast<int>(kShares.size()))));
       break;
   }

@@ -160,6 +160,9 @@ TEST_CASE("sealed set: two effects of the list beside one of no list, each of it
     sizes.insert(plan.sizes.begin(), plan.sizes.end());
   }
   CHECK(sizes.size() == kShares.size());
+  const Plan weak = make_plan(0, {.effect = "mixed", .size = Size::kWeak});
+  CHECK(weak.sizes.empty());
+  CHECK(weak.size == Size::kWeak);
 }
 
 TEST_CASE("sealed set: nobody beats the true simulator, and more signals never widen the bound") {
