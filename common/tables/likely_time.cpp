@@ -35,8 +35,9 @@ const char* likely_unit(const Paged<double>& column) {
 bool is_named_so(const std::string& name) {
   std::string small = name;
   std::ranges::transform(small, small.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return small == "t" || small == "date" || small == "utc" || small.find("time") != std::string::npos ||
-         small.find("stamp") != std::string::npos || small.starts_with("elapsed");
+  return small == "t" || small == "date" || small == "utc" || small == "sec" || small == "seconds" ||
+         small.find("time") != std::string::npos || small.find("stamp") != std::string::npos ||
+         small.starts_with("elapsed");
 }
 
 /// A date that is the same all day: its time of day stands in another column.

@@ -151,7 +151,7 @@ TEST_CASE("table draft: names are read by their words and units, however they ar
                              "Sway Velocity (m/s),Yaw Rate (deg/s)",
                              "time,posNorth,posEast,yawDeg,dvlVelX,dvlVelY,gyroZ_dps",
                              "elapsed_s,northing_m,easting_m,compass_heading_deg,v_x_mps,v_y_mps,yaw_rate_deg_per_s",
-                             "t,pos_x,pos_y,heading_measured,surge speed,sway speed,Rate Of Turn [°/s]"}) {
+                             "seconds,pos_x,pos_y,heading_measured,surge speed,sway speed,Rate Of Turn [°/s]"}) {
     CAPTURE(header);
     std::string draft;
     const Recording run = drafted(std::string{header} + "\n" + rows, draft, kBoat).recording;
