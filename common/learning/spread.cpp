@@ -6,6 +6,7 @@
 
 #include "common/base/factors.hpp"
 #include "common/learning/learn.hpp"
+#include "common/likelihood/effect_stages.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -56,7 +57,7 @@ Vector6d spread_of(const likelihood::Fit& fit, const model::Visited& visited, co
   return sigma.cwiseSqrt();
 }
 
-double not_visited(const model::LearnedForce& force, std::span<const Trial> trials) {
+double not_visited(const model::Model& model, const model::LearnedForce& force, std::span<const Trial> trials) {
   double beyond = 0.0, count = 0.0;
   for (const Trial& trial : trials) {
     for (std::size_t k = 0; k < trial.size(); ++k) {
@@ -66,6 +67,8 @@ double not_visited(const model::LearnedForce& force, std::span<const Trial> tria
       motion.R_WB = trial.q_WB[k].toRotationMatrix();
       motion.nu = trial.nu[k];
       motion.force = trial.input[k];
+      motion.vehicle = model.vehicle;
+      likelihood::feel_hull(model, motion);
       if (!trial.columns.empty())
         motion.columns = {trial.columns[k].data(), static_cast<std::size_t>(trial.columns[k].size())};
       beyond += force.beyond(motion) ? 1.0 : 0.0;

@@ -19,7 +19,9 @@ using Telling = std::function<model::FreeForce(const model::FreeForce&)>;
 [[nodiscard]] Vector6d spread_of(const likelihood::Fit& fit, const model::Visited& visited, const Telling& tell,
                                  double input_step, std::span<const model::Window> windows);
 
-/// Share of samples at which some term of the force is beyond what it was learned from, and fades.
-[[nodiscard]] double not_visited(const model::LearnedForce& force, std::span<const Trial> trials);
+/// Share of samples at which some term of the force is beyond what it was learned from, and fades; beside what the
+/// model has of the water.
+[[nodiscard]] double not_visited(const model::Model& model, const model::LearnedForce& force,
+                                 std::span<const Trial> trials);
 
 }  // namespace fathom::learning

@@ -82,11 +82,10 @@ void Plant::begin(const Vector6d& nu) {
   motion_.nu = nu;
   motion_.v_WF_B.setZero();
   motion_.a_WF_B.setZero();
-  if (!memory_.empty()) {
-    feel();
-    memory_.begin(motion_);
-  }
-  for (auto& slow : features_.slow_nu) slow = nu;
+  motion_.force = forces_.col(0);
+  feel();
+  if (!memory_.empty()) memory_.begin(motion_);
+  for (auto& slow : features_.slow_nu) slow = motion_.nu_r();
   const Vector6d tau = model_.allocation * forces_.col(0);
   for (auto& slow : features_.slow_tau) slow = tau;
   for (auto& use : features_.use) use = forces_.col(0).cwiseAbs();
@@ -129,9 +128,13 @@ void Plant::at_middle(std::size_t block) {
   show_features();
 }
 
-void Plant::set_water() {
+void Plant::feel_at(const Vector6d& nu) {
+  motion_.nu = nu;
   motion_.v_WF_B = v_WF_B_;
   motion_.a_WF_B = a_WF_B_;
+  motion_.w_memory.setZero();
+  motion_.force = force_;
+  if (feels_) feel();
 }
 
 void Plant::feel() {
@@ -141,20 +144,21 @@ void Plant::feel() {
   }
 }
 
-Vector6d Plant::outside_wrench(const Vector6d& nu) {
+Vector6d Plant::outside_wrench() {
   Vector6d wrench = memory_.empty() ? Vector6d{Vector6d::Zero()} : memory_.wrench();
   if (!own_.world_force.isZero(0.0)) wrench.head<3>() += motion_.R_WB.transpose() * own_.world_force;
   if (free_.empty()) return wrench;
   if (!free_moves_) return wrench + free_still_;
-  features_.nu = nu;
-  if (free_drags_) features_.drag = model::hull_drag(model_, nu);
+  features_.nu = motion_.nu_r();
+  if (free_drags_) features_.drag = model::hull_drag(model_, features_.nu);
   return wrench + free_.wrench(features_);
 }
 
 FeatureState Plant::features_at(const Vector6d& nu, bool with_operators) {
+  feel_at(nu);
   FeatureState state = features_;
-  state.nu = nu;
-  state.drag = model::hull_drag(model_, nu);
+  state.nu = motion_.nu_r();
+  state.drag = model::hull_drag(model_, state.nu);
   if (!with_operators) return state;
   state.by_mass = model::held_back_by_mass(acceleration(nu), nu);
   model::Load load;
@@ -177,13 +181,8 @@ FeatureState Plant::features_at(const Vector6d& nu, bool with_operators) {
 }
 
 Vector6d Plant::acceleration(const Vector6d& nu) {
-  motion_.nu = nu;
-  set_water();
-  motion_.w_memory = outside_wrench(nu);
-  if (feels_) {
-    motion_.force = force_;
-    feel();
-  }
+  feel_at(nu);
+  motion_.w_memory += outside_wrench();
   return model::acceleration(model_, motion_);
 }
 
@@ -209,19 +208,19 @@ Vector6d Plant::added_by(const model::ActiveEffect& effect, const Vector6d& nu_d
 
 void Plant::end_block(std::size_t block, const Vector6d& nu) {
   const Block& here = run_.blocks()[block];
-  if (!memory_.empty()) {
+  Vector6d past = nu;
+  if (feels_ || !memory_.empty()) {
     at_middle(block);
-    motion_.nu = nu;
-    set_water();
-    motion_.w_memory.setZero();
-    feel();
-    memory_.advance(motion_, here.dt);
+    feel_at(nu);
+    past = motion_.nu_r();
+    past.head<3>() += v_WF_B_;  // its own streams are felt after its memory
   }
+  if (!memory_.empty()) memory_.advance(motion_, here.dt);
   const Vector6d tau = model_.allocation * mean_.col(static_cast<Eigen::Index>(block));
   for (std::size_t b = 0; b < kThrustMemories.size(); ++b)
     features_.slow_tau[b] += -std::expm1(-here.dt / kThrustMemories[b]) * (tau - features_.slow_tau[b]);
   for (std::size_t b = 0; b < kVelocityMemories.size(); ++b)
-    features_.slow_nu[b] += -std::expm1(-here.dt / kVelocityMemories[b]) * (nu - features_.slow_nu[b]);
+    features_.slow_nu[b] += -std::expm1(-here.dt / kVelocityMemories[b]) * (past - features_.slow_nu[b]);
   for (std::size_t b = 0; b < kUseMemories.size(); ++b)
     features_.use[b] += -std::expm1(-here.dt / kUseMemories[b]) *
                         (mean_.col(static_cast<Eigen::Index>(block)).cwiseAbs() - features_.use[b]);

@@ -57,9 +57,10 @@ class Plant {
   void set(const Interval& interval, double t);
   /// What the free force and the learned features are functions of, of the moment that was set.
   void show_features();
-  [[nodiscard]] Vector6d outside_wrench(const Vector6d& nu);
+  [[nodiscard]] Vector6d outside_wrench();
+  /// At a velocity in the world, with all water that is in the model; nothing remembered yet.
+  void feel_at(const Vector6d& nu);
   void feel();
-  void set_water();
 
   model::Model model_;
   FreeForce free_;

@@ -25,14 +25,11 @@ Matrix6d Plant::slope(const Vector6d& nu, const Vector6d& nu_dot) {
 
 Matrix6d Plant::inverse_inertia(const Vector6d& nu, const Vector6d& nu_dot) {
   Matrix6d inverse = Matrix6d::Zero();
-  motion_.nu = nu;
-  const Vector6d remembered = outside_wrench(nu);
+  feel_at(nu);
+  const Vector6d remembered = motion_.w_memory + outside_wrench();
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!model_.vehicle->dof[static_cast<std::size_t>(i)]) continue;
-    set_water();
     motion_.w_memory = remembered + Vector6d::Unit(i);
-    motion_.force = force_;
-    if (feels_) feel();
     inverse.col(i) = model::acceleration(model_, motion_) - nu_dot;
   }
   motion_.w_memory = remembered;
@@ -42,9 +39,10 @@ Matrix6d Plant::inverse_inertia(const Vector6d& nu, const Vector6d& nu_dot) {
 void Plant::columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_dot, Columns& out) {
   const auto b = static_cast<Eigen::Index>(block);
   const Matrix6d inverse = inverse_inertia(nu, nu_dot);
-  features_.nu = nu;
+  features_.nu = motion_.nu_r();
   features_.by_mass = model::held_back_by_mass(nu_dot, nu);
-  if (free_drags_) features_.drag = model::hull_drag(model_, nu);
+  if (free_drags_) features_.drag = model::hull_drag(model_, features_.nu);
+  const Vector6d past = features_.nu, drag = features_.drag;  // as the columns before do not leave them
   for (std::size_t j = 0; j < numbers_.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
     const Number& number = numbers_[j];
@@ -89,6 +87,8 @@ void Plant::columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_do
       }
       case NumberKind::kWeight: {
         const Feature& feature = free_.features[static_cast<std::size_t>(number.index)];
+        features_.nu = past;
+        features_.drag = drag;
         if (feature.streams()) {
           const double value = feature.value(features_), rate = feature.rate(features_);
           const double size = std::abs(value) + std::abs(rate);

@@ -116,7 +116,7 @@ void tell_of_spread(const Judges& judges, const likelihood::Problem& problem, co
   const std::vector<model::Window> windows = residual::prediction_windows(judges.unseen, residual::lead_of(model));
   const Vector6d sigma = learning::spread_of(learned.fit, force.visited(), tell, judges.input_step, windows);
   std::copy(sigma.begin(), sigma.end(), given.prediction_std.begin());
-  given.not_visited = learning::not_visited(force, judges.unseen);
+  given.not_visited = learning::not_visited(learned.fit.hypothesis.model, force, judges.unseen);
   given.words += learning::spread_sentence(given);
 }
 

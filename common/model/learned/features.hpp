@@ -28,7 +28,7 @@ struct FeatureState {
   Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};
   Eigen::Matrix3d R_WB{Eigen::Matrix3d::Identity()};
   double heading_cosine{1.0}, heading_sine{0.0};
-  Vector6d nu{Vector6d::Zero()};
+  Vector6d nu{Vector6d::Zero()};   ///< past the water, as the named effects have it move
   Vector6d tau{Vector6d::Zero()};  ///< wrench of the actuators as they reach the water
   model::ActuatorForces force{};   ///< N
   std::array<Vector6d, kThrustMemories.size()> slow_tau{};

@@ -73,7 +73,8 @@ LearnedForm::LearnedForm(FreeForce force, Visited visited, Allocation allocation
 }
 
 FeatureState LearnedForm::state_of(const Motion& motion) const {
-  FeatureState state{.t = motion.t, .p_WB = motion.p_WB, .R_WB = motion.R_WB, .nu = motion.nu, .force = motion.force};
+  FeatureState state{
+      .t = motion.t, .p_WB = motion.p_WB, .R_WB = motion.R_WB, .nu = motion.nu_r(), .force = motion.force};
   const double across = std::hypot(motion.R_WB(0, 0), motion.R_WB(1, 0));
   state.heading_cosine = across > 0.0 ? motion.R_WB(0, 0) / across : 1.0;
   state.heading_sine = across > 0.0 ? motion.R_WB(1, 0) / across : 0.0;
@@ -175,7 +176,7 @@ void LearnedForm::settle(const Motion& motion, EffectTheta, std::span<double> z)
   if (!remembers_) return;
   Eigen::Map<Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
   memory.leftCols<kTaps>().colwise() = Vector6d{allocation_ * motion.force};
-  memory.rightCols<kSlow>().colwise() = motion.nu;
+  memory.rightCols<kSlow>().colwise() = motion.nu_r();
   // What was done before is on record, as it was commanded; no run-in is as long as these memories.
   ActuatorForces then = motion.force;
   for (std::size_t b = 0; b < kUseMemories.size(); ++b) {
@@ -199,7 +200,7 @@ void LearnedForm::advance(const Motion& motion, EffectTheta, double dt, std::spa
     memory.col(b) += -std::expm1(-dt / kThrustMemories[static_cast<std::size_t>(b)]) * (tau - memory.col(b));
   for (Eigen::Index b = 0; b < kSlow; ++b)
     memory.col(kTaps + b) +=
-        -std::expm1(-dt / kVelocityMemories[static_cast<std::size_t>(b)]) * (motion.nu - memory.col(kTaps + b));
+        -std::expm1(-dt / kVelocityMemories[static_cast<std::size_t>(b)]) * (motion.nu_r() - memory.col(kTaps + b));
   for (std::size_t b = 0; b < kUseMemories.size(); ++b) {
     auto use = use_in(z, allocation_.cols(), b);
     use += -std::expm1(-dt / kUseMemories[b]) * (motion.force.cwiseAbs() - use);

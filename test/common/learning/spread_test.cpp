@@ -76,8 +76,14 @@ TEST_CASE("spread: motion beyond what was visited is counted and said") {
   model::Visited visited;
   visited.nu.setConstant(0.5);
   const model::LearnedForce learned{force, visited, vehicle.allocation};
-  const double share = learning::not_visited(learned, {&dive.trial, 1});
+  const double share = learning::not_visited(dive.truth, learned, {&dive.trial, 1});
   CHECK(share == doctest::Approx(0.25).epsilon(0.05));
+  // Carried along by the water, the craft is as fast past it as ever.
+  model::Model carried = dive.truth;
+  std::vector<double> theta(model::find_effect("current")->parameters().size(), 0.0);
+  theta[0] = 3.0;
+  carried.add({.effect = model::find_effect("current"), .theta = theta});
+  CHECK(learning::not_visited(carried, learned, {&dive.trial, 1}) > 0.5);
   CorrectionGiven given;
   given.prediction_std = {0.012, 0.0, 0.0, 0.0, 0.0, 0.003};
   given.not_visited = 0.25;

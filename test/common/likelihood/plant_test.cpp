@@ -3,6 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "common/model/learned/learned_force.hpp"
 #include "test/common/likelihood/noisy_dive.hpp"
 
 using namespace fathom;
@@ -142,4 +146,76 @@ TEST_CASE("plant: a free force's mass holds back as a load does that was taken u
   Vector6d wrench = Vector6d::Zero();
   mass.add(plant.features_at(nu, true), 1.0, wrench);
   CHECK((plant.inverse_inertia(nu, plant.acceleration(nu)) * wrench - slope).norm() < 1e-5 * slope.norm());
+}
+
+TEST_CASE("plant: in a current a free force reads the velocity past the water, as the learned force does") {
+  const auto [vehicle, dive, run, block, nu, plain] = Halfway{};
+  Hypothesis hypothesis = plain;
+  std::vector<double> theta(model::find_effect("current")->parameters().size(), 0.0);
+  theta[0] = 0.25;
+  theta[1] = -0.1;
+  hypothesis.model.add({.effect = model::find_effect("current"), .theta = theta});
+  const auto feature = [](int axis, std::initializer_list<model::Factor> factors) {
+    model::Feature one{.axis = axis, .count = static_cast<int>(factors.size())};
+    std::ranges::copy(factors, one.factors.begin());
+    return one;
+  };
+  const model::Factor u{.quantity = model::Quantity::kVelocity, .index = 0},
+      speed{.quantity = model::Quantity::kSpeed, .index = 0},
+      slow{.quantity = model::Quantity::kSlowVelocity, .index = 1, .bank = 1};
+  model::FreeForce& force = hypothesis.force;
+  force.features = {feature(0, {u, speed}), feature(model::kHullDrag, {speed}), feature(1, {slow})};
+  force.groups = {
+      {.axis = 0, .count = 1}, {.axis = model::kHullDrag, .first = 1, .count = 1}, {.axis = 1, .first = 2, .count = 1}};
+  force.weights = {-6.0, 0.4, -3.0};
+  std::vector<Number> numbers;
+  for (int w = 0; w < 3; ++w) numbers.push_back({.kind = NumberKind::kWeight, .index = w});
+  Plant plant{hypothesis, numbers, run, 0, true};
+  plant.begin(run.start());
+  model::Motion start = plant.motion();
+  plant.at_middle(0);
+  const Vector6d here = plant.acceleration(nu);
+
+  // The learned force that is made of it, on the same instant.
+  model::Visited visited;
+  visited.nu.setConstant(10.0);
+  visited.tau.setConstant(1e3);
+  visited.force = model::ActuatorForces::Constant(vehicle.allocation.cols(), 1e3);
+  const model::LearnedForce learned{force, visited, hypothesis.model.allocation};
+  model::Model model = hypothesis.model;
+  model.add({.effect = &learned});
+  model::Motion motion = plant.motion();
+  for (model::Motion* each : {&start, &motion}) {
+    each->v_WF_B.setZero();
+    each->a_WF_B.setZero();
+    each->w_memory.setZero();
+  }
+  motion.force = plant.mean_forces().col(0);
+  std::vector<double> memory(static_cast<std::size_t>(model.memory_size()), 0.0);
+  model::settle(model, start, memory);
+  model::feel(model, motion, memory, 0.0);
+  CHECK((here - model::acceleration(model, motion)).norm() < 1e-9);
+
+  // Over the ground it would be another force; and its columns are its slopes.
+  Hypothesis still = hypothesis;
+  still.force.features = {feature(0, {u, speed})};
+  still.force.groups.resize(1);
+  still.force.weights.resize(1);
+  Hypothesis none = still;
+  none.force = {};
+  Vector6d past = nu;
+  past.head<3>() -= motion.R_WB.transpose() * Eigen::Vector3d(theta[0], theta[1], 0.0);
+  const double share = (acceleration_at(still, run, 0, nu) - acceleration_at(none, run, 0, nu))[0] *
+                       hypothesis.model.theta[0] / (-6.0 * past[0] * std::abs(past[0]));
+  CHECK(share == doctest::Approx(1.0).epsilon(1e-6));
+  Columns columns(6, 3);
+  plant.columns(0, nu, here, columns);
+  for (int w = 0; w < 3; ++w) {
+    constexpr double kStep = 1e-3;
+    Hypothesis more = hypothesis, less = hypothesis;
+    more.force.weights[static_cast<std::size_t>(w)] += kStep;
+    less.force.weights[static_cast<std::size_t>(w)] -= kStep;
+    const Vector6d slope = (acceleration_at(more, run, 0, nu) - acceleration_at(less, run, 0, nu)) / (2.0 * kStep);
+    CHECK((columns.col(w) - slope).norm() < 1e-5 * (slope.norm() + 1e-3));
+  }
 }
