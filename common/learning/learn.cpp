@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "common/base/factors.hpp"
-#include "common/inference/stretches.hpp"
 #include "common/learning/formula.hpp"
 #include "common/learning/inner_numbers.hpp"
 #include "common/learning/left_out.hpp"
@@ -104,12 +103,14 @@ model::Visited visited_by(const Problem& problem, const likelihood::Hypothesis& 
   const std::vector<likelihood::Number> none;
   for (std::size_t r = 0; r < problem.runs.size(); ++r) {
     const likelihood::RunData& run = problem.runs[r];
-    const likelihood::Plant plant{hypothesis, none, run, r, false};
+    likelihood::Plant plant{hypothesis, none, run, r, false};
     const Eigen::MatrixXd& forces = plant.mean_forces();
     visited.force = visited.force.cwiseMax(forces.cwiseAbs().rowwise().maxCoeff());
     visited.tau = visited.tau.cwiseMax((hypothesis.model.allocation * forces).cwiseAbs().rowwise().maxCoeff());
     for (std::size_t k = 0; k < run.trial().size(); ++k) {
-      for (std::size_t i = 0; i < 6; ++i) sizes[i].push_back(std::abs(run.trial().nu[k][static_cast<Eigen::Index>(i)]));
+      plant.at_substep(std::min(k, run.intervals().size() - 1), 0);
+      const Vector6d nu = plant.features_at(run.trial().nu[k], false).nu;
+      for (std::size_t i = 0; i < 6; ++i) sizes[i].push_back(std::abs(nu[static_cast<Eigen::Index>(i)]));
       visited.p_low = visited.p_low.cwiseMin(run.trial().p_WB[k]);
       visited.p_high = visited.p_high.cwiseMax(run.trial().p_WB[k]);
     }
@@ -134,8 +135,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   const Fit& base = conclusion.found.best.fit;
   const model::Scene scene = model::scene_of(*problem.vehicle, of);
   std::optional<inference::FreeForceFound> free = conclusion.found.free_force, lasting;
-  // A screen of all products of an hour costs minutes: long recordings are learned by the search's broad groups alone.
-  if (!conclusion.found.cut_short && !inference::stretches_of(problem, {})) {
+  if (!conclusion.found.cut_short) {
     Sought sought = seek_force(problem, base, scene, limits, threads, progress);
     if (sought.all.fit.finite && !(free && free->fit.finite && free->log_odds > sought.all.log_odds))
       free = std::move(sought.all);

@@ -8,6 +8,7 @@
 #include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/feature_screen.hpp"
+#include "common/inference/stretches.hpp"
 #include "common/learning/inner_numbers.hpp"
 #include "common/learning/pick_groups.hpp"
 #include "common/learning/steps.hpp"
@@ -92,6 +93,25 @@ class Seeker {
       prune(each->fit);
       conclude(*each);
     }
+    return sought;
+  }
+
+  /// What was found on stretches of these runs, with the numbers that all of them give it.
+  [[nodiscard]] Sought on_whole(const Seeker& ahead, const Sought& there) {
+    groups_ = ahead.groups_;
+    const auto with = [&](const FreeForceFound& found) {
+      FreeForceFound whole{.at_fixed_noise = found.at_fixed_noise};
+      if (!found.fit.finite) return whole;
+      whole.fit = fitted(seen_.fit.hypothesis, found.fit.hypothesis.force, seen_.fit.noise, threads_);
+      if (!whole.fit.finite) return whole;
+      prune(whole.fit);
+      conclude(whole);
+      return whole;
+    };
+    const bool lasts = there.lasting.fit.finite && there.all.fit.finite &&
+                       there.lasting.fit.hypothesis.force.groups.size() == there.all.fit.hypothesis.force.groups.size();
+    Sought sought{.all = with(there.all)};
+    sought.lasting = lasts ? sought.all : with(there.lasting);
     return sought;
   }
 
@@ -232,8 +252,24 @@ class Seeker {
 
 Sought seek_force(const likelihood::Problem& problem, const likelihood::Fit& base, const model::Scene& scene,
                   const Limits& limits, int threads, const Progress& progress) {
-  begin(progress, kSeek, limits.rounds);
-  Sought sought = Seeker{problem, base, scene, limits, threads}.run(progress);
+  const std::optional<inference::Stretches> stretches = inference::stretches_of(problem, {});
+  begin(progress, kSeek, limits.rounds + (stretches ? stretches->of_whole : 0.0));
+  Sought sought;
+  if (!stretches) {
+    sought = Seeker{problem, base, scene, limits, threads}.run(progress);
+  } else {
+    const likelihood::Problem few = likelihood::make_problem(*problem.vehicle, stretches->trials, problem.run_settings);
+    likelihood::Hypothesis there = base.hypothesis;
+    there.runs.clear();
+    for (const std::size_t run : stretches->run) there.runs.push_back(base.hypothesis.runs[run]);
+    const likelihood::Fit again =
+        likelihood::fit(few, there, base.noise, {.noise_rounds = 2, .steps = 2, .threads = threads});
+    if (again.finite) {
+      Seeker ahead{few, again, scene, limits, threads};
+      sought = ahead.run(progress);
+      if (sought.all.fit.finite) sought = Seeker{problem, base, scene, limits, threads}.on_whole(ahead, sought);
+    }
+  }
   progress.expect(kSeek.phase, 0);
   return sought;
 }

@@ -1,7 +1,7 @@
 // The force that is added to a model: products of terms and modulators, screened beside the fitted model, fitted with
 // the noise anew, and what the first fit leaves screened again. It is sought once the listed effects have been, and
 // explains what they leave; what it could do in a name's place is the search's question (docs/decisions/172), which
-// asks broad groups for it.
+// asks broad groups for it. Long recordings are screened on stretches of them; what is found is fitted to all of them.
 #pragma once
 
 #include "common/base/progress.hpp"
