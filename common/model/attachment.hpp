@@ -1,5 +1,6 @@
-// Where on the vehicle a cable is made fast: at the origin, or at a place to be found. How high is sought where roll or
-// pitch is simulated, or moves a cable that drags; a level vehicle otherwise tells an anchor that is as much too deep.
+// Where on the vehicle a cable or another part is made fast: at the origin, or at a place to be found. How high is
+// sought where roll or pitch is simulated, or moves a cable that drags; a level vehicle otherwise tells an anchor that
+// is as much too deep.
 #pragma once
 
 #include <array>

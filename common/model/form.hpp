@@ -43,7 +43,7 @@ using FormName = std::optional<std::string>;
   return seen ? FormName{std::move(name)} : std::nullopt;
 }
 
-/// Something that no list holds and that moves a vehicle in the same way.
+/// Something that moves a vehicle in the same way and that no list holds, or that acts where it has not been.
 struct Unlisted {
   std::string_view what;       ///< for people; empty: nothing is known to
   std::string_view told_by{};  ///< the motion that would tell the two apart

@@ -131,7 +131,7 @@ std::string look_alikes(const Conclusion& conclusion) {
   std::string words;
   for (const inference::LookAlike& one : conclusion.look_alikes)
     words += "What is called " + title(one.of) + " may be " + one.what +
-             " as well, which no list holds: what tells is " + one.told_by + ". ";
+             " as well, of which these data say nothing: what tells is " + one.told_by + ". ";
   return words;
 }
 

@@ -58,7 +58,7 @@ TEST_CASE("result: a file of schema 1 is read, whatever else it tells") {
     effect["error_reduction"] = 0.3;
     effect["corrupts"] = "X_u";
     effect["other_forms"] = {"T4 or T0"};
-    effect["unlisted_alternative"] = "a layer of denser water";
+    effect["unlisted_alternative"] = "denser water below the depths visited";
   }
   for (auto& candidate : old["candidates"]) candidate["aliased_with"] = {"current"};
   test::write_bytes(w.scratch.path("old.json"), old.dump());

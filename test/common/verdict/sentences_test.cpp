@@ -20,13 +20,13 @@ TEST_CASE("sentences: a refusal says what was reached and what was needed") {
 }
 
 TEST_CASE(
-    "sentences: a named effect's look-alike that no list holds is told beside it, with what tells the two apart") {
+    "sentences: a named effect's look-alike is told beside it, with what tells the two apart") {
   inference::Conclusion conclusion;
   conclusion.verdict = inference::Verdict::effect;
   CHECK(verdict::paragraph(conclusion).find("as well") == std::string::npos);
-  conclusion.look_alikes.push_back({"bottom_effect", "a layer of denser water below", "going deeper"});
+  conclusion.look_alikes.push_back({"bottom_effect", "denser water below the depths visited", "going deeper"});
   const std::string told = verdict::paragraph(conclusion);
-  CHECK(told.find("may be a layer of denser water below as well, which no list holds") != std::string::npos);
+  CHECK(told.find("may be denser water below the depths visited as well, of which") != std::string::npos);
   CHECK(told.find("what tells is going deeper. ") != std::string::npos);
   conclusion.verdict = inference::Verdict::adequate;
   CHECK(verdict::paragraph(conclusion).find("denser") == std::string::npos);

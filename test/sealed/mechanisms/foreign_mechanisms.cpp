@@ -29,19 +29,24 @@ class Vortices : public Sized {
   double width_, drag_, strouhal_;
 };
 
-/// A sharp layer: below it the water is denser.
-class Thermocline : public Sized {
+/// Warm water from an outfall rises in a column.
+class Upwelling : public Sized {
  public:
-  Thermocline(const std::string& name, const Craft& craft, const Site& site, Random& random)
-      : Sized(name, 0.3 * usual_drag(craft)[2], 40.0 * usual_drag(craft)[2]),
-        depth_(site.centre.z() + 0.3 * site.half.z() * random.uniform(-1.0, 1.0)) {}
-  void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {
-    terms.net_weight -= 0.5 * size() * (1.0 + std::tanh((at.position.z() - depth_) / 0.08));
+  Upwelling(const std::string& name, const Craft&, const Site& site, Random& random)
+      : Sized(name, 0.05, 0.8), width_(site.half.head<2>().minCoeff() * random.uniform(0.3, 0.7)) {
+    at_ = site.centre.head<2>() +
+          0.6 * Eigen::Vector2d(random.uniform(-1.0, 1.0) * site.half.x(), random.uniform(-1.0, 1.0) * site.half.y());
   }
-  [[nodiscard]] Numbers parameters() const override { return {{"depth", depth_}, {"step_N", size()}}; }
+  void water(double, const Vector3d& position, Water& water) const override {
+    water.velocity.z() -= size() * std::exp(-0.5 * (position.head<2>() - at_).squaredNorm() / (width_ * width_));
+  }
+  [[nodiscard]] Numbers parameters() const override {
+    return {{"N", at_.x()}, {"E", at_.y()}, {"width", width_}, {"rises", size()}};
+  }
 
  private:
-  double depth_;
+  double width_;
+  Eigen::Vector2d at_;
 };
 
 /// Play in the drive: thrust follows only after the command has come back by more than the gap.
@@ -170,7 +175,7 @@ class FinLift : public Sized {
 
 const std::vector<Entry>& foreign() {
   static const std::vector<Entry> list{{"vortex_shedding", {}, make<Vortices>},
-                                       {"thermocline", {}, make<Thermocline>},
+                                       {"upwelling", {}, make<Upwelling>},
                                        {"thrust_hysteresis", {.thrusters = true}, make<Hysteresis>},
                                        {"thruster_interference", {.thrusters = true}, make<Interference>},
                                        {"air_bursts", {}, make<AirBursts>},

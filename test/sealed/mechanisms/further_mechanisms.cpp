@@ -273,6 +273,57 @@ class TurningStream : public Sized {
   double rate_, phase_;
 };
 
+/// Fresh on salt, that mix by diffusion; or a top that the wind has stirred, below which the water grows denser.
+class Layers : public Sized {
+ public:
+  Layers(const std::string& name, const Craft& craft, const Site& site, Random& random)
+      : Sized(name, 0.3 * usual_drag(craft)[2], 40.0 * usual_drag(craft)[2]),
+        depth_(site.centre.z() + 0.5 * site.half.z() * random.uniform(-1.0, 1.0)),
+        stirred_(random.chance(0.4)),
+        width_(site.half.z() * (stirred_ ? random.uniform(0.1, 0.4) : random.uniform(0.02, 0.2))) {}
+  void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {
+    const double below = (at.position.z() - depth_) / width_;
+    terms.net_weight -= size() * (stirred_ ? -std::expm1(-std::max(below, 0.0)) : 0.5 * std::erfc(-below));
+  }
+  [[nodiscard]] Numbers parameters() const override {
+    return {{"depth", depth_}, {"width_m", width_}, {"stirred", stirred_ ? 1.0 : 0.0}, {"step_N", size()}};
+  }
+
+ private:
+  double depth_;
+  bool stirred_;
+  double width_;
+};
+
+/// Bolted on outside: an arm, a lamp, a bottle. Its drag differs from side to side.
+class BoltedOn : public Sized {
+ public:
+  BoltedOn(const std::string& name, const Craft& craft, const Site&, Random& random) : Sized(name, 0.2, 6.0) {
+    const int side = random.below(3);
+    at_ = 0.4 * craft.extent.cwiseProduct(
+                    Vector3d(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)));
+    at_[side] = random.sign() * random.uniform(0.5, 1.0) * craft.extent[side];
+    const bool rod = random.chance(0.5);
+    for (int i = 0; i < 3; ++i)
+      each_[i] = craft.hull.quadratic[0] * (rod && i == side ? random.uniform(0.05, 0.3) : random.uniform(0.7, 1.4));
+  }
+  void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {
+    const Vector3d v = at.nu_r.head<3>() + at.nu_r.tail<3>().cross(at_);
+    terms.wrench += at_cleat(at_, -size() * v.norm() * each_.cwiseProduct(v));
+  }
+  [[nodiscard]] Numbers parameters() const override {
+    return {{"x", at_.x()},
+            {"y", at_.y()},
+            {"z", at_.z()},
+            {"c_x", size() * each_.x()},
+            {"c_y", size() * each_.y()},
+            {"c_z", size() * each_.z()}};
+  }
+
+ private:
+  Vector3d at_, each_;
+};
+
 }  // namespace
 
 const std::vector<Entry>& further() {
@@ -292,7 +343,9 @@ const std::vector<Entry>& further() {
                            {"thruster_lag:torque", single, make<TorqueLag>},
                            {"thruster_deadband:rounded", single, make<SoftBand>},
                            {"bottom_effect:suction", {}, make<Suction>},
-                           {"wall_effect:suction", {}, make<Suction>}};
+                           {"wall_effect:suction", {}, make<Suction>},
+                           {"layered_water", {}, make<Layers>},
+                           {"appendage", {}, make<BoltedOn>}};
     for (const auto& part : {interaction_mechanisms(), surface_mechanisms()})
       all.insert(all.end(), part.begin(), part.end());
     return all;

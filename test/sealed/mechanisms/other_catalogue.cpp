@@ -138,12 +138,12 @@ std::vector<const Entry*> foreign_of(CraftClass craft_class) {
     case CraftClass::kRov:
       return all_of(foreign());
     case CraftClass::kTorpedo:
-      return entries({"air_bursts", "thermocline", "fouling", "sensor_stick", "thrust_hysteresis"});
+      return entries({"air_bursts", "upwelling", "fouling", "sensor_stick", "thrust_hysteresis"});
     case CraftClass::kBoat:
     case CraftClass::kShip:
       return entries({"gusts", "air_bursts", "fouling", "sensor_stick", "thrust_hysteresis"});
     case CraftClass::kGlider:
-      return entries({"thermocline", "fouling", "sensor_stick"});
+      return entries({"upwelling", "fouling", "sensor_stick"});
   }
   return {};
 }

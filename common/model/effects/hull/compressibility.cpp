@@ -2,7 +2,7 @@
 // gains buoyancy instead (Fossen 2011, sec. 4.1.2 takes B as constant). Linear: weight minus buoyancy grows by s per
 // metre of depth, w = s z down_B; the constant part is the base model's W-B. Ignores: the hull's moment, air that
 // dissolves, temperature. Revealed by slow dives over the whole range of depth, with pauses. Confused with
-// bottom_effect (which bends), a tether's vertical pull, and W-B when the depth hardly changes.
+// bottom_effect (which bends), layered_water whose edge is wide, a tether's vertical pull, and W-B when the depth hardly changes.
 #include <algorithm>
 #include <array>
 

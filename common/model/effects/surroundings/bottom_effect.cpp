@@ -23,10 +23,10 @@ constexpr std::array kBottomEffectParameters{
         .name = "reach", .unit = "m", .sigma = 0.5, .low = kSmallestReach, .high = kLongestReach, .blurred = true},
     EffectParameter{"at_depth", "m"}};
 
-/// The upper edge of a layer of denser water lifts exponentially too, until the vehicle has gone through it.
+/// The upper edge of denser water lifts exponentially too, until the vehicle has gone through it (layered_water).
 constexpr Level kBottom{
     .down = 1.0,
-    .looks_like = {"a layer of denser water below", "going deeper, or to the same depth where the bottom is deeper"}};
+    .looks_like = {"denser water below the depths visited", "going deeper, or to the same depth where the bottom is deeper"}};
 
 class NearBottom final : public NearLevel {
  public:

@@ -25,7 +25,7 @@ constexpr std::array kSurfaceEffectParameters{
 /// Lighter water above lets the vehicle sink as a push would.
 constexpr Level kSurface{
     .down = -1.0,
-    .looks_like = {"a layer of lighter water above", "the same motion at the same depth when the water is mixed"}};
+    .looks_like = {"lighter water above the depths visited", "the same motion at the same depth when the water is mixed"}};
 
 class NearSurface final : public NearLevel {
  public:

@@ -326,3 +326,58 @@ TEST_CASE("fluid_memory, cubic_drag, tether_drag, drag of boundaries: none feeds
     CHECK(load.wrench.dot(motion.nu) < 0.0);
   }
 }
+
+TEST_CASE(
+    "appendage: drags by its own velocity past the water, turns the vehicle by its arm, and takes energy always") {
+  constexpr int kBlunt = 7, kWider = 15;
+  const auto load_of = [](int variant, const Vector6d& nu) {
+    model::Motion motion;
+    motion.nu = nu;
+    model::Load load;
+    model::find_effect("appendage")
+        ->load(motion,
+               std::vector{6.0, variant == kBlunt ? 0.0 : std::log(2.5), variant == kBlunt ? 0.0 : std::log(0.5), 0.5,
+                           0.0, -0.2},
+               variant, load);
+    return load.wrench;
+  };
+  // Turning on the spot: v_C = r x_C along y, and the moment x_C F_y about z, -z_C F_y about x.
+  const Vector6d turning = load_of(kBlunt, (Vector6d() << 0, 0, 0, 0, 0, 0.8).finished());
+  CHECK((turning - (Vector6d() << 0, -0.96, 0, -0.192, 0, -0.48).finished()).norm() < kHullRounding);
+  // Wider across y, narrower across z.
+  const auto straight = [](int axis) { return Vector6d{0.4 * Vector6d::Unit(axis)}; };
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = axis == 1 ? 2.5 : axis == 2 ? 0.5 : 1.0;
+    CHECK((load_of(kWider, straight(axis)) - share * load_of(kBlunt, straight(axis))).norm() < kHullRounding);
+  }
+  CHECK(load_of(kWider, straight(1))[5] == doctest::Approx(0.5 * -2.4));
+  std::mt19937_64 random{7};
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 200; ++k) {
+    const Vector6d nu = Vector6d::NullaryExpr([&] { return normal(random); });
+    CHECK(load_of(kBlunt, nu).dot(nu) < 0.0);
+    CHECK(load_of(kWider, nu).dot(nu) < 0.0);
+  }
+}
+
+TEST_CASE("appendage: sought along the axes in which it turns the vehicle, and of no craft that lives by its flow") {
+  const model::Effect& appendage = *model::find_effect("appendage");
+  const auto asked = [&](const char* name, double sway = 0.0) {
+    const model::Vehicle vehicle = test::vehicle_from_repository(name);
+    model::Scene scene{.vehicle = &vehicle, .position = true, .attitude = true, .velocity = true, .rates = true};
+    scene.nu_rms << 0.3, 0.3, 0.3, sway, sway, 0.3;
+    scene.tau_rms.setConstant(5.0);
+    std::vector<int> numbers;
+    const auto names = appendage.variants(scene);
+    for (std::size_t v = 0; v < names.size(); ++v) {
+      if (names[v] == "-") continue;
+      numbers.push_back(appendage.numbers(static_cast<int>(v)));
+      for (const auto& start : appendage.starts(scene, static_cast<int>(v))) CHECK(start.size() == 6);
+    }
+    return numbers;
+  };
+  CHECK(asked("bluerov2_heavy") == std::vector{4, 6});
+  CHECK(asked("seabotix_lbv150") == std::vector{3, 5});  // it neither rolls nor pitches: no height is felt
+  CHECK(asked("seabotix_lbv150", 0.1) == std::vector{4, 6});
+  CHECK(asked("kvlcc2_l3").empty());
+}

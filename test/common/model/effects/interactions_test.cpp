@@ -224,5 +224,5 @@ TEST_CASE("surface_effect: the bottom's laws seen in a mirror that lies level") 
     for (const auto& start : surface.starts(fixture.scene, v)) CHECK(start[1] <= fixture.scene.p_low.z());
     if (v < 2) CHECK_FALSE(surface.possible(std::vector{2.0, 1.4, 0.4, 0.5}, v, fixture.scene));  // below the middle
   }
-  CHECK(surface.looks_like(std::vector{2.0, 0.0, 0.4, 0.5}, 2, fixture.scene).what == "a layer of lighter water above");
+  CHECK(surface.looks_like(std::vector{2.0, 0.0, 0.4, 0.5}, 2, fixture.scene).what == "lighter water above the depths visited");
 }

@@ -56,7 +56,7 @@ TEST_CASE("bottom_effect: its drag is the hull's own once more for each square o
   CHECK(load.wrench.tail<3>().isZero(0.0));
 }
 
-TEST_CASE("bottom_effect: one floor obeys one law, and its exponential push is that of a layer of denser water below") {
+TEST_CASE("bottom_effect: one floor obeys one law, and its exponential push is that of denser water not reached") {
   const model::Effect& bottom = *model::find_effect("bottom_effect");
   constexpr int kForce = 0, kDrag = 1, kExponentialForce = 2, kExponentialDrag = 3;
   CHECK(bottom.rules_out(kForce, kExponentialForce));
@@ -69,13 +69,62 @@ TEST_CASE("bottom_effect: one floor obeys one law, and its exponential push is t
   for (double z = 1.0; z < kDepth - 2.0 * kThickness; z += 0.1) {
     model::Motion motion;
     motion.p_WB.z() = z;
-    const double layer = 0.5 * kStep * (1.0 + std::tanh((z - kDepth) / kThickness));
+    const double layer = -load_of("layered_water", {kStep, kDepth, kThickness, 0.0}, 0, motion).wrench.z();
     const auto load = load_of("bottom_effect", {kStep, 0.0, 0.5 * kThickness, kDepth}, kExponentialForce, motion);
     CHECK(-load.wrench.z() == doctest::Approx(layer).epsilon(0.02));  // its tail: exp(-4) of it is missing
   }
   CHECK_FALSE(bottom.looks_like(std::vector{kStep, 0.0, 0.15, kDepth}, kExponentialForce, {}).what.empty());
   CHECK(bottom.looks_like(std::vector{-kStep, 0.0, 0.15, kDepth}, kExponentialForce, {}).what.empty());  // suction
   CHECK(bottom.looks_like(std::vector{kStep, 5.0, 0.0, 0.0}, kForce, {}).what.empty());
+}
+
+TEST_CASE("layered_water: lifts by its step below the edge, by half within it, along the world's vertical") {
+  const auto push = [](double z) {
+    model::Motion motion;
+    motion.p_WB.z() = z;
+    motion.R_WB = rotation_from_euler({0.4, -0.3, 2.0});
+    return Eigen::Vector3d(motion.R_WB * load_of("layered_water", {6.0, 2.0, 0.1, 0.0}, 0, motion).wrench.head<3>());
+  };
+  CHECK(push(0.5).norm() < kPlacesRounding);
+  CHECK((push(2.0) - Eigen::Vector3d(0.0, 0.0, -3.0)).norm() < kPlacesRounding);
+  CHECK((push(3.5) - Eigen::Vector3d(0.0, 0.0, -6.0)).norm() < kPlacesRounding);
+  CHECK(push(1.9).z() + push(2.1).z() == doctest::Approx(-6.0));  // odd about its edge
+
+  // With the flanks of diffusion, an error function.
+  constexpr double kDiffusion = 0.07, kOfWidth = 1.0 / 1.129, kClose = 5e-4, kWidth = 0.3;
+  for (double x = -3.0; x < 3.0; x += 0.1) {
+    model::Motion motion;
+    motion.p_WB.z() = 2.0 + kWidth * x;
+    const model::Load load = load_of("layered_water", {1.0, 2.0, kOfWidth * kWidth, kDiffusion}, 0, motion);
+    CHECK(std::abs(load.wrench.z() + 0.5 * std::erfc(-x)) < kClose);
+  }
+
+  // Stirred above: nothing there, and the rest of the step falls off below.
+  const auto below = [](double z) {
+    model::Motion motion;
+    motion.p_WB.z() = z;
+    return -load_of("layered_water", {6.0, 2.0, 0.5, 0.0}, 1, motion).wrench.z();
+  };
+  CHECK(below(1.9) == 0.0);
+  CHECK(below(2.5) == doctest::Approx(6.0 * (1.0 - std::exp(-1.0))));
+  CHECK(below(20.0) == doctest::Approx(6.0));
+}
+
+TEST_CASE("layered_water: an edge that was not come near, a mere slope and lighter water below are none") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const model::Scene scene = scene_in_a_tank(vehicle);  // from .5 to 1.5 m deep
+  const model::Effect& layer = *model::find_effect("layered_water");
+  CHECK(layer.possible(std::vector{6.0, 1.2, 0.1, 0.0}, 0, scene));
+  CHECK_FALSE(layer.possible(std::vector{-6.0, 1.2, 0.1, 0.0}, 0, scene));
+  CHECK_FALSE(layer.possible(std::vector{6.0, 1.7, 0.1, 0.0}, 0, scene));
+  CHECK_FALSE(layer.possible(std::vector{6.0, 0.4, 0.1, 0.0}, 0, scene));
+  CHECK_FALSE(layer.possible(std::vector{6.0, 1.0, 0.6, 0.0}, 0, scene));
+  for (const int form : {0, 1})
+    for (const auto& start : layer.starts(scene, form)) CHECK(layer.possible(start, form, scene));
+  CHECK(layer.rules_out(0, 1));
+  model::Scene shallow = scene;
+  shallow.p_high.z() = shallow.p_low.z() + 0.2;
+  CHECK(layer.variants(shallow).empty());
 }
 
 TEST_CASE("bottom and wall: what takes drag away, or lies behind the vehicle, is no boundary") {
@@ -266,13 +315,13 @@ TEST_CASE("effects of place: starts surround the water worked in, and nothing is
     CHECK(start[4] == doctest::Approx(n.cwiseAbs().dot(Eigen::Vector2d(2.0, 1.0))));
   }
   constexpr std::size_t kMost = 24;  // each start costs a rollout over all data
-  for (const char* name : {"bottom_effect", "wall_effect", "tether_drag", "compressibility"}) {
+  for (const char* name : {"bottom_effect", "wall_effect", "tether_drag", "compressibility", "layered_water"}) {
     CHECK(model::find_effect(name)->starts(scene, 0).size() <= kMost);
     CHECK(model::find_effect(name)->feels_place());
     CHECK_FALSE(model::find_effect(name)->variants(scene).empty());
   }
   scene.position = false;
-  for (const char* name : {"bottom_effect", "wall_effect", "tether_drag", "compressibility"}) {
+  for (const char* name : {"bottom_effect", "wall_effect", "tether_drag", "compressibility", "layered_water"}) {
     CHECK(model::find_effect(name)->variants(scene).empty());
   }
   scene.position = true;
