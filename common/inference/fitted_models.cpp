@@ -212,10 +212,13 @@ Standing FittedModels::standing(const Fitted& best, double base, const std::stri
   }
   std::vector<std::string> others = best.names;
   others.erase(std::ranges::find(others, name));
+  // Over the highest: a set that is too small to matter may score thousands of nats more than the best.
+  double highest = best.score;
+  for (const auto& [names, score] : of_set) highest = std::max(highest, score);
   double sum = 0.0, with = 0.0, rest = kNever, of_rival = kNever;
   Standing standing;
   for (const auto& [names, score] : of_set) {
-    const double weight = std::exp(score - best.score);
+    const double weight = std::exp(score - highest);
     sum += weight;
     if (holds(names, name)) with += weight;
     if (names == others) rest = score;

@@ -15,6 +15,7 @@ namespace fathom::simulation {
 namespace {
 
 constexpr double kOpenWater = 10.0;     // m around the start, where there are no walls
+constexpr double kEdge = 0.15;          // m, of a layer of other water
 constexpr double kBoundaryDrag = 0.5;   // m^2, or plain at the boundary itself
 constexpr double kTiltShare = 0.3;      // of the righting moment that an unknown one may have
 constexpr double kMassShare = 0.15;     // of the vehicle's mass that a payload may have
@@ -111,6 +112,10 @@ double drawn(const model::ActiveEffect& active, const model::EffectParameter& pa
   if (name == "until") return std::min(occasion.duration, kFlown);
   if (name == "onset") return (0.5 * share) * std::min(occasion.duration, kFlown);
   if (name == "bottom_depth" || name == "at_depth") return site.floor;
+  // The edge of a layer lies between the start and the floor.
+  if (name == "edge_depth")
+    return occasion.start.z() + (std::isfinite(site.floor) ? 0.4 * share * (site.floor - occasion.start.z()) : share);
+  if (name == "edge_width") return kEdge * share;
   if (name == "bearing") return traits.stage == model::Stage::kWater ? 2.0 * std::numbers::pi * side : wall_bearing;
   if (name == "distance" || name == "at_distance") return wall_distance;
   if (name == "frequency") return scene.tones_horizontal.front().omega;

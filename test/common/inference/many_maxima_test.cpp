@@ -78,16 +78,18 @@ TEST_CASE("many maxima: a coupling of inertias has its size, though base numbers
   CHECK(size_of_effect(problem, seen, 0).share > 0.5 * expected);
 }
 
-TEST_CASE("many maxima: what was refused for a limit is no rival of what was found, and what is too small to matter is") {
+TEST_CASE(
+    "many maxima: what was refused for a limit is no rival of what was found, and what is too small to matter is") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   const auto dive = test::fly(vehicle, {.duration = 30.0, .force = 0.05});
   const likelihood::Problem problem = likelihood::make_problem(vehicle, {&dive.trial, 1});
   const std::vector<Law> laws = catalogue(model::scene_of(vehicle, {&dive.trial, 1}), {});
   FittedModels models{problem, laws, 1, {}};
-  const auto fitted = [&](const char* name, double log_evidence) {
+  const auto fitted = [&](const char* name, double log_evidence, const char* beside = "") {
     likelihood::Fit fit;
     fit.hypothesis = likelihood::nominal_hypothesis(problem);
-    if (*name != '\0') fit.hypothesis.model.add(law_of(laws, name).seed);
+    for (const char* each : {name, beside})
+      if (*each != '\0') fit.hypothesis.model.add(law_of(laws, each).seed);
     fit.log_evidence = log_evidence;
     fit.finite = true;
     return models.add(std::move(fit));
@@ -102,6 +104,11 @@ TEST_CASE("many maxima: what was refused for a limit is no rival of what was fou
   const Standing beside_small = models.standing(found, base.score, "current", {{"thruster_lag"}});
   CHECK(beside_small.rival == "thruster_lag");
   CHECK(beside_small.probability < 0.1);
+  // Small beside the name, and thousands of nats above it: the name is as sure as ever.
+  fitted("current", 5000.0, "centre_of_mass");
+  const Standing with_small =
+      models.standing(found, base.score, "current", {{"centre_of_mass", "current"}, {"thruster_lag"}});
+  CHECK(with_small.probability == doctest::Approx(1.0));
 }
 
 TEST_CASE("many maxima: forms that act in place of each other do not stand in one model, others do") {

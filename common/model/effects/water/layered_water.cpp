@@ -26,12 +26,12 @@ constexpr double kThinnest = 0.02;    // m: sharper, it passes within a sample
 constexpr double kLeastDepths = 0.3;  // m that must have been visited: less would be within the hull's height
 constexpr double kWidest = 0.5;       // of the range of depth: wider, it is a line
 // Of the range of depth, where a search looks for it: what is buoyant over a strong step comes no deeper than its edge.
-constexpr std::array kPlaces{0.25, 0.5, 0.75, 1.0};
+constexpr std::array kPlaces{0.25, 0.5, 0.75, 0.9, 1.0};
 constexpr std::array kWidths{0.04, 0.2};
 
 constexpr std::array kLayeredWaterParameters{
-    EffectParameter{"buoyancy_step", "N", 3.0, 0.0, 1e4}, EffectParameter{"depth", "m", 100.0},
-    EffectParameter{.name = "width", .unit = "m", .sigma = 1.0, .low = kThinnest, .high = 50.0, .blurred = true},
+    EffectParameter{"buoyancy_step", "N", 3.0, 0.0, 1e4}, EffectParameter{"edge_depth", "m", 100.0},
+    EffectParameter{.name = "edge_width", .unit = "m", .sigma = 1.0, .low = kThinnest, .high = 50.0, .blurred = true},
     EffectParameter{.name = "flanks", .unit = "", .sigma = 0.1, .low = 0.0, .high = 1.0, .blurred = true}};
 
 double range_of(const Scene& scene) { return scene.p_high.z() - scene.p_low.z(); }
