@@ -30,6 +30,7 @@ constexpr double kOverdue = 0.25;  // for progress: of its rounds, what a fit th
 
 std::vector<std::string> names_of(const std::vector<model::ActiveEffect>& effects) {
   std::vector<std::string> names;
+  names.reserve(effects.size());
   for (const model::ActiveEffect& active : effects) names.emplace_back(active.effect->name());
   std::ranges::sort(names);
   return names;
@@ -249,6 +250,7 @@ std::vector<Fitted> FittedModels::near(const Fitted& best, double within, std::s
     if (!fresh && fitted.score > place->second->score) place->second = &fitted;
   }
   std::vector<Fitted> sets;
+  sets.reserve(of_set.size());
   for (const auto& [names, fitted] : of_set) sets.push_back(*fitted);
   std::ranges::sort(sets, std::greater{}, &Fitted::score);
   sets.resize(std::min(sets.size(), most));
