@@ -136,7 +136,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   const model::Scene scene = model::scene_of(*problem.vehicle, of);
   std::optional<inference::FreeForceFound> free = conclusion.found.free_force, lasting;
   if (!conclusion.found.cut_short) {
-    Sought sought = seek_force(problem, base, scene, limits, threads, progress);
+    Sought sought = seek_force(problem, base, scene, limits, threads, progress, inference::stretches_of(problem, {}));
     if (sought.all.fit.finite && !(free && free->fit.finite && free->log_odds > sought.all.log_odds))
       free = std::move(sought.all);
     if (sought.lasting.fit.finite) lasting = std::move(sought.lasting);

@@ -8,7 +8,6 @@
 #include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/feature_screen.hpp"
-#include "common/inference/stretches.hpp"
 #include "common/learning/inner_numbers.hpp"
 #include "common/learning/pick_groups.hpp"
 #include "common/learning/steps.hpp"
@@ -251,8 +250,8 @@ class Seeker {
 }  // namespace
 
 Sought seek_force(const likelihood::Problem& problem, const likelihood::Fit& base, const model::Scene& scene,
-                  const Limits& limits, int threads, const Progress& progress) {
-  const std::optional<inference::Stretches> stretches = inference::stretches_of(problem, {});
+                  const Limits& limits, int threads, const Progress& progress,
+                  const std::optional<inference::Stretches>& stretches) {
   begin(progress, kSeek, limits.rounds + (stretches ? stretches->of_whole : 0.0));
   Sought sought;
   if (!stretches) {

@@ -6,6 +6,7 @@
 
 #include "common/base/progress.hpp"
 #include "common/inference/free_force.hpp"
+#include "common/inference/stretches.hpp"
 #include "common/learning/limits.hpp"
 
 namespace fathom::learning {
@@ -16,7 +17,9 @@ struct Sought {
 };
 
 /// Beside `base`; groups in the order of what each is worth beside the others. No fit: nothing is worth its price.
+/// `stretches` of the recordings, where they are long: screened instead of all of them.
 [[nodiscard]] Sought seek_force(const likelihood::Problem& problem, const likelihood::Fit& base,
-                                const model::Scene& scene, const Limits& limits, int threads, const Progress& progress);
+                                const model::Scene& scene, const Limits& limits, int threads, const Progress& progress,
+                                const std::optional<inference::Stretches>& stretches = std::nullopt);
 
 }  // namespace fathom::learning

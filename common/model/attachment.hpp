@@ -15,6 +15,12 @@ constexpr std::array kAttachment{EffectParameter{"attached_x", "m", 0.3, -3.0, 3
                                  EffectParameter{"attached_y", "m", 0.3, -3.0, 3.0},
                                  EffectParameter{"attached_z", "m", 0.3, -3.0, 3.0}};
 
+/// Whether it rolls or pitches at all, measured if not simulated: a high place then moves.
+[[nodiscard]] inline bool sways(const Scene& scene) {
+  constexpr double kSwaying = 0.01;  // rad/s
+  return scene.nu_rms.segment<2>(3).norm() > kSwaying;
+}
+
 /// The components of the place that turn the vehicle about a simulated axis; its height also where it is `felt`
 /// otherwise.
 [[nodiscard]] inline int attachment_set(const Vehicle& vehicle, bool felt = false) {

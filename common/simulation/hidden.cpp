@@ -15,7 +15,7 @@ namespace fathom::simulation {
 namespace {
 
 constexpr double kOpenWater = 10.0;     // m around the start, where there are no walls
-constexpr double kEdge = 0.15;          // m, of a layer of other water
+constexpr double kEdge = 0.15;          // m, how wide the edge of a layer is
 constexpr double kBoundaryDrag = 0.5;   // m^2, or plain at the boundary itself
 constexpr double kTiltShare = 0.3;      // of the righting moment that an unknown one may have
 constexpr double kMassShare = 0.15;     // of the vehicle's mass that a payload may have

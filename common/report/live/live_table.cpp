@@ -72,8 +72,8 @@ std::string suspects(const LiveTrialResult& result) {
     text += (result.learned->adopted ? "  learned: " : "  not learned: ") + result.learned->words + "\n";
   text += "  in the identifier's model: " + (result.adopted.empty() ? "no effect" : join(result.adopted, ", ")) + "\n";
   for (const NamedValue& p : result.effect_numbers) {
-    text += "    " + pad_right(p.name, 32) + number(p.value, 4) + " ± " + number(kNormal95 * p.std, 2) + " " + p.unit +
-            "\n";
+    text += "    " + pad_right(p.name, 32) + number(p.value, 4) + " ± " + number(kNormal95 * p.std, 2) +
+            (p.unit.empty() ? "" : " " + p.unit) + "\n";
   }
   return text;
 }

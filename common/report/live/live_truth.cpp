@@ -19,7 +19,8 @@ std::string effect_text(const nlohmann::json& effect) {
   if (!effect.contains("parameters")) return text;
   std::vector<std::string> parts;
   for (const auto& [name, entry] : effect["parameters"].items()) {
-    parts.push_back(name + " " + number(entry.value("value", 0.0)) + " " + entry.value("unit", ""));
+    const std::string unit = entry.value("unit", "");
+    parts.push_back(name + " " + number(entry.value("value", 0.0)) + (unit.empty() ? "" : " " + unit));
   }
   return text + ": " + join(parts, ", ");
 }

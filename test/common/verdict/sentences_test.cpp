@@ -19,14 +19,14 @@ TEST_CASE("sentences: a refusal says what was reached and what was needed") {
   CHECK(verdict::sentence({Rule::kBound, 12.0, 10.0}) == "fits only with a number at its limit");
 }
 
-TEST_CASE(
-    "sentences: a named effect's look-alike is told beside it, with what tells the two apart") {
+TEST_CASE("sentences: a named effect's look-alike is told beside it, with what tells the two apart") {
   inference::Conclusion conclusion;
   conclusion.verdict = inference::Verdict::effect;
   CHECK(verdict::paragraph(conclusion).find("as well") == std::string::npos);
   conclusion.look_alikes.push_back({"bottom_effect", "denser water below the depths visited", "going deeper"});
   const std::string told = verdict::paragraph(conclusion);
-  CHECK(told.find("may be denser water below the depths visited as well, of which") != std::string::npos);
+  CHECK(told.find("may be denser water below the depths visited as well, of which these data say nothing: ") !=
+        std::string::npos);
   CHECK(told.find("what tells is going deeper. ") != std::string::npos);
   conclusion.verdict = inference::Verdict::adequate;
   CHECK(verdict::paragraph(conclusion).find("denser") == std::string::npos);

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
+#include <memory>
 
 #include "common/model/attachment.hpp"
 #include "common/model/component_set.hpp"
@@ -33,25 +33,21 @@ constexpr std::array kAppendageParameters{EffectParameter{"coefficient", "N/(m/s
 constexpr std::size_t kY = 1, kZ = 2, kPlace = 3;  // the last: its first number
 constexpr int kOnePart = 0;                        // all forms are laws of one and the same thing
 constexpr double kStartShare = 0.2;                // of the thrust, where a search begins
-constexpr double kSwaying = 0.01;        // rad/s of roll and pitch, measured if not simulated: they move a high part
-constexpr double kSmallestSpeed = 0.01;  // m/s
-constexpr double kBesideHull = 0.3;      // m, where the file does not tell the hull's size
-constexpr double kOfHull = 0.5;          // of its length, width, height: at the hull's skin
+constexpr double kSmallestSpeed = 0.01;            // m/s
+constexpr double kBesideHull = 0.3;                // m, where the file does not tell the hull's size
+constexpr double kOfHull = 0.5;                    // of its length, width, height: at the hull's skin
 
-class Dragging : public OneOfMany {
+class PartOutside final : public OneOfMany {
  public:
-  Dragging(int set, NumberSet sides, const char* name)
-      : OneOfMany{{.sought = sought_of(set, sides), .obeys = kOnePart}}, set_{set}, name_{name} {}
-  FormName name(const Scene& scene) const final {
-    const auto& dof = scene.vehicle->dof;
-    const bool pushed = dof[0] || dof[1] || dof[2];
+  PartOutside(int set, NumberSet sides)
+      : OneOfMany{{.sought = sought_of(set, sides), .obeys = kOnePart}}, set_{set}, sides_{sides} {}
+  FormName name(const Scene& scene) const override {
+    const Vehicle& vehicle = *scene.vehicle;
+    const bool asked = set_ != 0 && set_ == attachment_set(vehicle, sways(scene)) && tells_sides(vehicle.dof);
     // Of a craft that lives by its flow, every part of the hull lifts and drags: body_lift and cross_flow have it.
-    const bool sways = scene.nu_rms.segment<2>(3).norm() > kSwaying;
-    return when(set_ != 0 && set_ == attachment_set(*scene.vehicle, sways) && pushed && has_sides(*scene.vehicle) &&
-                    !lives_by_flow(*scene.vehicle),
-                name_);
+    return when(asked && !lives_by_flow(vehicle), sides_.has(kY) ? "wider on one side" : "blunt");
   }
-  Starts starts(const Scene& scene) const final {
+  Starts starts(const Scene& scene) const override {
     const double speed = std::max(scene.nu_rms.head<3>().norm(), kSmallestSpeed);
     const double coefficient = kStartShare * std::max(scene.tau_rms.head<3>().norm(), 1e-2) / (speed * speed);
     Starts starts;
@@ -67,7 +63,7 @@ class Dragging : public OneOfMany {
     }
     return starts;
   }
-  void load(const Motion& motion, EffectTheta theta, Load& load) const final {
+  void load(const Motion& motion, EffectTheta theta, Load& load) const override {
     if (theta[0] == 0.0) return;
     const Eigen::Vector3d p_BC = components(theta, set_, kPlace);
     const Vector6d nu_r = motion.nu_r();
@@ -78,46 +74,31 @@ class Dragging : public OneOfMany {
     load.wrench.tail<3>() += p_BC.cross(drag);
   }
 
- protected:
-  /// Whether the vehicle is pushed along the axes that the form tells apart.
-  [[nodiscard]] virtual bool has_sides(const Vehicle& vehicle) const = 0;
-
  private:
   static NumberSet sought_of(int set, NumberSet sides) {
     NumberSet numbers{0};
-    for (const std::size_t side : {kY, kZ})
+    for (const std::size_t side : {kY, kZ}) {
       if (sides.has(side)) numbers.add(side);
-    for (std::size_t i = 0; i < 3; ++i)
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
       if (in_set(set, i)) numbers.add(kPlace + i);
+    }
     return numbers;
   }
+  /// Whether the vehicle is pushed along the axes that the form tells apart, and along no other.
+  [[nodiscard]] bool tells_sides(const std::array<bool, 6>& dof) const {
+    return sides_.has(kY) ? dof[0] && dof[1] && dof[2] == sides_.has(kZ) : dof[0] || dof[1] || dof[2];
+  }
+
   int set_;
-  const char* name_;
-};
-
-class Blunt final : public Dragging {
- public:
-  explicit Blunt(int set) : Dragging{set, {}, "blunt"} {}
-  bool has_sides(const Vehicle&) const override { return true; }
-};
-
-class WiderOnOneSide final : public Dragging {
- public:
-  explicit WiderOnOneSide(int set) : Dragging{set, {kY, kZ}, "wider on one side"} {}
-  bool has_sides(const Vehicle& vehicle) const override { return vehicle.dof[0] && vehicle.dof[1] && vehicle.dof[2]; }
-};
-
-/// Of a vehicle that is not moved up and down.
-class WiderAcross final : public Dragging {
- public:
-  explicit WiderAcross(int set) : Dragging{set, {kY}, "wider on one side"} {}
-  bool has_sides(const Vehicle& vehicle) const override { return vehicle.dof[0] && vehicle.dof[1] && !vehicle.dof[2]; }
+  NumberSet sides_;
 };
 
 Forms every_part() {
-  Forms all = form_per_set<Blunt>();
-  for (Forms& more : std::array{form_per_set<WiderOnOneSide>(), form_per_set<WiderAcross>()})
-    std::ranges::move(more, std::back_inserter(all));
+  Forms all;
+  for (const NumberSet sides : {NumberSet{}, NumberSet{kY, kZ}, NumberSet{kY}}) {
+    for (int set = 0; set < kSetsOfThree; ++set) all.push_back(std::make_unique<PartOutside>(set, sides));
+  }
   return all;
 }
 
@@ -127,6 +108,7 @@ const Effect& appendage() {
   static const Effect kEffect{{.name = "appendage",
                                .sentence = "A part that the vehicle file lacks sticks out and drags there.",
                                .revealed_by = "straight runs along every axis, and turning on the spot",
+                               .finding = "Something sticks out and drags at x {attached_x}, y {attached_y}",
                                .stage = Stage::kBody,
                                .amplitudes = 1,
                                .feels_motion = false,

@@ -27,7 +27,6 @@ constexpr std::array kTetherDragParameters{EffectParameter{"coefficient", "N/(m/
                                            kAttachment[2]};
 constexpr std::size_t kAttached = 4;  // its first number
 constexpr int kBearings = 8;
-constexpr double kSwaying = 0.01;  // rad/s of roll and pitch, measured if not simulated: they move a high cleat
 
 /// A line of straight length, made fast at the origin or off it.
 class LineInWater : public Form {
@@ -79,8 +78,7 @@ class SquareOfSpeed final : public LineInWater {
  public:
   using LineInWater::LineInWater;
   FormName name(const Scene& scene) const override {
-    const bool sways = scene.nu_rms.segment<2>(3).norm() > kSwaying;
-    return seen(scene) ? attachment_name(set_, attachment_set(*scene.vehicle, sways)) : std::nullopt;
+    return seen(scene) ? attachment_name(set_, attachment_set(*scene.vehicle, sways(scene))) : std::nullopt;
   }
 
  private:

@@ -52,7 +52,7 @@ class Profile : public Form {
     const double range = std::max(range_of(scene), kLeastDepths), force = 0.1 * std::max(scene.tau_rms[2], 1e-2);
     Starts starts;
     for (const double place : kPlaces) {
-      if (share(place < 1.0 ? 1.0 : 0.0, 0.0) == 0.0) continue;  // nothing would show
+      if (place == 1.0 && share(0.0, 0.0) == 0.0) continue;  // nothing of it would show at the deepest place
       for (const double width : kWidths)
         starts.push_back({force, scene.p_low.z() + place * range, std::max(width * range, kThinnest), 0.0});
     }
@@ -91,6 +91,7 @@ const Effect& layered_water() {
   static const Effect kEffect{{.name = "layered_water",
                                .sentence = "Below some depth the water is denser.",
                                .revealed_by = "slow dives through its edge, with pauses above and below",
+                               .finding = "Buoyancy grows by {buoyancy_step} about a depth of {edge_depth}",
                                .stage = Stage::kBody,
                                .amplitudes = 1,
                                .feels_motion = false,
