@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "common/preflight/applicability.hpp"
@@ -46,11 +48,21 @@ std::vector<NamedValue> numbers_of(const likelihood::Fit& fit, const Eigen::Vect
 
 bool names_claim(Verdict verdict) { return verdict == Verdict::effect || verdict == Verdict::ambiguous; }
 
+std::vector<std::size_t> surest_first(const inference::Found& found) {
+  std::vector<std::size_t> order(std::min(found.odds.size(), found.best.fit.hypothesis.model.effects.size()));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t e) { return found.odds[e]; });
+  return order;
+}
+
 void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, const Eigen::VectorXd& sigma, bool in_model,
                   DiagnosisResult& result) {
   const inference::Found& found = conclusion.found;
   const auto& effects = fit.hypothesis.model.effects;
-  for (std::size_t e = 0; e < effects.size() && e < found.odds.size(); ++e) {
+  std::vector<std::size_t> order = surest_first(found);
+  if (!names_claim(conclusion.verdict)) std::ranges::sort(order);
+  std::erase_if(order, [&](std::size_t e) { return e >= effects.size(); });
+  for (const std::size_t e : order) {
     const std::string name{effects[e].effect->name()}, &form = effects[e].variant_name;
     if (!names_claim(conclusion.verdict)) {
       result.stand_ins.push_back({name, form, in_model, found.size[e], found.over[e], conclusion.modulation[e].depth,

@@ -24,7 +24,11 @@ constexpr double kNotAsked = std::numeric_limits<double>::quiet_NaN();  ///< nul
 [[nodiscard]] std::vector<NamedValue> numbers_of(const likelihood::Fit& fit, const Eigen::VectorXd& sigma,
                                                  const std::set<int>& withheld);
 
-/// Effects of `fit`, which gives all other numbers too. `in_model`: of stand-ins.
+/// Places of the found effects, the surest first: the order in which people are told of causes.
+[[nodiscard]] std::vector<std::size_t> surest_first(const inference::Found& found);
+
+/// Effects of `fit`, which gives all other numbers too; causes the surest first, stand-ins, whose odds mean nothing, as
+/// they act. `in_model`: of stand-ins.
 void list_effects(const inference::Conclusion& conclusion, const likelihood::Fit& fit, const Eigen::VectorXd& sigma,
                   bool in_model, DiagnosisResult& result);
 

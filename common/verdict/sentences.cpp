@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "common/verdict/by_likelihood.hpp"
+#include "common/verdict/lists.hpp"
 
 namespace fathom::verdict {
 namespace {
@@ -30,9 +31,9 @@ std::string title(std::string name) {
 std::string names(const Conclusion& conclusion) {
   std::string all;
   const auto& effects = conclusion.found.best.fit.hypothesis.model.effects;
-  for (std::size_t e = 0; e < effects.size(); ++e) {
+  for (const std::size_t e : surest_first(conclusion.found)) {
     const double odds = conclusion.found.odds[e];
-    all += (e > 0 ? ", " : "") + title(std::string(effects[e].effect->name()));
+    all += (all.empty() ? "" : ", ") + title(std::string(effects[e].effect->name()));
     if (!effects[e].variant_name.empty()) all += " (" + effects[e].variant_name + ")";
     all += ": " + percent(conclusion.found.size[e]) + " of the applied force";
     all += text(", log odds %.0f", odds);

@@ -58,6 +58,22 @@ TEST_CASE("claims: a listed effect is a cause, and no stand-in") {
   CHECK(result.effects[0].parameters[0].value == doctest::Approx(0.1).epsilon(0.1));  // m/s toward north
 }
 
+TEST_CASE("claims: the surest cause is told first, in whatever order causes act") {
+  const verdict::Answer answer =
+      answer_to({.duration = 90.0,
+                 .seed = 4,
+                 .force = 0.05,
+                 .effects = {test::active("thruster_lag", {0.06}), test::active("current", {0.2, 0.1})}},
+                {});
+  const std::vector<EffectFound>& effects = answer.report.result.effects;
+  REQUIRE(effects.size() == 2);
+  CHECK(effects[0].name == "current");
+  CHECK(effects[1].name == "thruster_lag");
+  CHECK(effects[0].log_odds > effects[1].log_odds);
+  const std::string& told = answer.report.result.paragraph;
+  CHECK(told.find("current") < told.find("thruster lag"));
+}
+
 TEST_CASE("claims: what foretells the runs that judge worse than the model without it is no cause") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   const auto dive = [&](double north, unsigned seed) {
