@@ -12,9 +12,9 @@
 namespace fathom::inference {
 namespace {
 
-constexpr std::array kCountPrior{0.5, 0.3, 0.13, 0.05, 0.02};  // of 0 to 4 effects
-constexpr double kOwnFlowPrior = 0.5;                          // of a form of what craft that live by their flow have
-constexpr double kNever = -1e300;                              // score of what could not be fitted
+constexpr std::array kCountPrior{0.5, 0.3, 0.12, 0.05, 0.02, 0.006, 0.002, 0.001, 0.001};  // of 0 to 8 effects
+constexpr double kOwnFlowPrior = 0.5;  // of a form of what craft that live by their flow have
+constexpr double kNever = -1e300;      // score of what could not be fitted
 
 // A round of the numbers and the noise tells a candidate's rank; only what may still win goes on. What has not gained
 // half of what the best has, and is not near it, has never won afterwards.

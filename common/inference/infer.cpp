@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/inference/followed.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/parameters.hpp"
 #include "common/model/rollout.hpp"
@@ -13,67 +14,6 @@ namespace fathom::inference {
 namespace {
 
 using likelihood::NumberKind;
-
-/// Of one axis of one run, squares about their means over kSlow: of the accelerations over kAccelerationSpan as they
-/// were filtered, and of what the model did not foretell of them from where the vehicle was.
-struct Squares {
-  double all{}, left{};
-};
-Squares squares_of(const likelihood::RunData& run, const likelihood::RunReference& reference, int axis) {
-  constexpr double kSlow = 5.0;  // s: what changes more slowly is missing, but it is not thrust that nothing follows
-  Squares squares;
-  std::vector<double> moved, foretold;
-  const auto close = [&] {
-    const auto n = static_cast<double>(moved.size());
-    double mean_moved = 0.0, mean_left = 0.0;
-    for (std::size_t k = 0; k < moved.size(); ++k) {
-      mean_moved += moved[k] / n;
-      mean_left += (moved[k] - foretold[k]) / n;
-    }
-    for (std::size_t k = 0; k < moved.size(); ++k) {
-      squares.all += std::pow(moved[k] - mean_moved, 2);
-      squares.left += std::pow(moved[k] - foretold[k] - mean_left, 2);
-    }
-    moved.clear();
-    foretold.clear();
-  };
-  double span = 0.0, sum = 0.0;
-  Eigen::Index from = 0;
-  for (std::size_t b = 1; b < run.blocks().size(); ++b) {
-    const likelihood::Block& block = run.blocks()[b];
-    const auto at = static_cast<Eigen::Index>(b);
-    if (!block.scored) {
-      span = sum = 0.0;
-      from = at;
-      continue;
-    }
-    span += block.dt;
-    sum += block.dt * reference.nu_dot(axis, at);
-    if (span < likelihood::kAccelerationSpan) continue;
-    moved.push_back((reference.nu_end(axis, at) - reference.nu_end(axis, from)) / span);
-    foretold.push_back(sum / span);
-    span = sum = 0.0;
-    from = at;
-    if (static_cast<double>(moved.size()) * likelihood::kAccelerationSpan >= kSlow) close();
-  }
-  close();
-  return squares;
-}
-
-/// Per simulated axis, the share of the acceleration that the model foretells. Below zero: it had better foretell none.
-std::vector<double> followed(const likelihood::Problem& problem, const Seen& seen) {
-  std::vector<double> shares;
-  for (int i = 0; i < problem.simulated; ++i) {
-    Squares sum;
-    for (std::size_t r = 0; r < problem.runs.size(); ++r) {
-      const Squares squares = squares_of(problem.runs[r], seen.reference[r], problem.axes[static_cast<std::size_t>(i)]);
-      sum.all += squares.all;
-      sum.left += squares.left;
-    }
-    shares.push_back(sum.all > 0.0 ? 1.0 - sum.left / sum.all : 1.0);
-  }
-  return shares;
-}
 
 likelihood::Fit by_horizon(const likelihood::Problem& problem, const likelihood::Fit& fit, int threads) {
   likelihood::Fit reported = likelihood::fit(problem, fit.hypothesis, fit.noise,
@@ -173,9 +113,10 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     unexplained = true;
   }
   const auto names = static_cast<int>(claims(found.best.fit.hypothesis.model.effects));
-  if (names >= thresholds.most_effects) {
+  if (found.wanted > 0 || names >= thresholds.most_effects) {
+    const int most = found.wanted > 0 ? thresholds.few_effects : thresholds.most_effects;
     reasons.push_back(
-        {Cause::kManyNames, static_cast<double>(names), static_cast<double>(thresholds.most_effects), ""});
+        {Cause::kManyNames, static_cast<double>(std::max(names, found.wanted)), static_cast<double>(most), ""});
     unexplained = true;
   }
   if (found.cut_short) reasons.push_back({Cause::kOutOfTime, found.spent, found.given, ""});
@@ -208,52 +149,99 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
   conclusion.verdict = found.cut_short ? Verdict::not_judged : Verdict::adequate;
 }
 
+namespace {
+
+/// What follows from one end of the search.
+class Concluding {
+ public:
+  Concluding(const likelihood::Problem& problem, const model::Scene& scene, std::span<const Trial> trials,
+             const Settings& settings, const Progress& progress, const Deadline& deadline)
+      : problem_{problem},
+        scene_{scene},
+        trials_{trials},
+        settings_{settings},
+        progress_{progress},
+        deadline_{deadline} {}
+
+  Conclusion from(Found found) const {
+    Conclusion conclusion;
+    conclusion.found = std::move(found);
+    if (conclusion.found.best.fit.finite) {
+      describe(conclusion);
+      report(conclusion);
+    }
+    conclude(problem_, settings_.thresholds, conclusion);
+    return conclusion;
+  }
+
+ private:
+  void describe(Conclusion& conclusion) const {
+    const likelihood::Fit& best = conclusion.found.best.fit;
+    const Seen seen = see(problem_, best, settings_.threads);
+    conclusion.followed = followed(problem_, seen);
+    for (std::size_t e = 0; e < best.hypothesis.model.effects.size(); ++e)
+      conclusion.modulation.push_back(modulation_of(problem_, seen, scene_, e, settings_.thresholds));
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem_.simulated); ++axis) {
+      const likelihood::AxisNoise& noise = best.noise[axis];
+      const int of = problem_.axes[axis];
+      conclusion.random.push_back({of, noise[likelihood::kForce], noise[likelihood::kForceMemory],
+                                   noise[likelihood::kForce] / std::max(seen.applied[of], 1e-9)});
+    }
+    for (const model::ActiveEffect& active : best.hypothesis.model.effects) {
+      const model::Unlisted other = active.effect->looks_like(active.theta, active.variant, scene_);
+      if (!other.what.empty())
+        conclusion.look_alikes.push_back(
+            {std::string{active.effect->name()}, std::string{other.what}, std::string{other.told_by}});
+    }
+  }
+
+  void report(Conclusion& conclusion) const {
+    const Found& found = conclusion.found;
+    double of_base = 0.0;
+    if (!found.best.names.empty()) progress_.expect(kHorizonFit.phase, 2, kHorizonFit.weight);
+    conclusion.reported = reported(found.best.fit, conclusion.disagreement);
+    conclusion.reported_base = found.best.names.empty() ? conclusion.reported : reported(found.base.fit, of_base);
+  }
+
+  likelihood::Fit reported(const likelihood::Fit& fit, double& gain) const {
+    progress_.begin(kHorizonFit.phase, kHorizonFit.what);
+    likelihood::Fit by = deadline_.over() ? fit : by_horizon(problem_, fit, settings_.threads);
+    gain = deadline_.over() ? 0.0 : fall_of_error(problem_, trials_, fit, by);
+    progress_.done(kHorizonFit.phase);
+    return gain > settings_.thresholds.disagreement ? by : fit;
+  }
+
+  const likelihood::Problem& problem_;
+  const model::Scene& scene_;
+  std::span<const Trial> trials_;
+  const Settings& settings_;
+  const Progress& progress_;
+  const Deadline& deadline_;
+};
+
+}  // namespace
+
 Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, const Settings& settings,
                  const Progress& progress) {
   const likelihood::Problem problem = likelihood::make_problem(vehicle, trials, settings.runs);
   model::Scene scene = model::scene_of(vehicle, trials);
   scene.candidates = settings.candidates;
-  Conclusion conclusion;
   if (length_of(problem) < settings.thresholds.shortest) {
+    Conclusion conclusion;
     conclude(problem, settings.thresholds, conclusion);
     return conclusion;
   }
   progress.expect(kHorizonFit.phase, 1, kHorizonFit.weight);
   const Deadline deadline{settings.time_budget};
-  conclusion.found =
-      search(problem, scene, settings.without, settings.thresholds, settings.threads, progress, deadline);
-  const Found& found = conclusion.found;
-  if (found.best.fit.finite) {
-    const Seen seen = see(problem, found.best.fit, settings.threads);
-    conclusion.followed = followed(problem, seen);
-    for (std::size_t e = 0; e < found.best.fit.hypothesis.model.effects.size(); ++e)
-      conclusion.modulation.push_back(modulation_of(problem, seen, scene, e, settings.thresholds));
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
-      const likelihood::AxisNoise& noise = found.best.fit.noise[axis];
-      const int of = problem.axes[axis];
-      conclusion.random.push_back({of, noise[likelihood::kForce], noise[likelihood::kForceMemory],
-                                   noise[likelihood::kForce] / std::max(seen.applied[of], 1e-9)});
-    }
-    for (const model::ActiveEffect& active : found.best.fit.hypothesis.model.effects) {
-      const model::Unlisted other = active.effect->looks_like(active.theta, active.variant, scene);
-      if (!other.what.empty())
-        conclusion.look_alikes.push_back(
-            {std::string{active.effect->name()}, std::string{other.what}, std::string{other.told_by}});
-    }
-    const auto reported = [&](const likelihood::Fit& fit, double& gain) {
-      progress.begin(kHorizonFit.phase, kHorizonFit.what);
-      likelihood::Fit by = deadline.over() ? fit : by_horizon(problem, fit, settings.threads);
-      gain = deadline.over() ? 0.0 : fall_of_error(problem, trials, fit, by);
-      progress.done(kHorizonFit.phase);
-      return gain > settings.thresholds.disagreement ? by : fit;
-    };
-    double of_base = 0.0;
-    if (!found.best.names.empty()) progress.expect(kHorizonFit.phase, 2, kHorizonFit.weight);
-    conclusion.reported = reported(found.best.fit, conclusion.disagreement);
-    conclusion.reported_base = found.best.names.empty() ? conclusion.reported : reported(found.base.fit, of_base);
-  }
-  conclude(problem, settings.thresholds, conclusion);
-  return conclusion;
+  const Concluding concluding{problem, scene, trials, settings, progress, deadline};
+  Conclusion conclusion = concluding.from(
+      search(problem, scene, settings.without, settings.thresholds, settings.threads, progress, deadline));
+  // Many names imitate what no list holds: with more than a few, a model must leave nothing.
+  const bool leaves = conclusion.verdict == Verdict::unexplained || conclusion.verdict == Verdict::no_model;
+  if (!leaves || conclusion.found.fewer.empty()) return conclusion;
+  Found few = std::move(conclusion.found.fewer.front());
+  few.wanted = static_cast<int>(claims(conclusion.found.best.fit.hypothesis.model.effects));
+  return concluding.from(std::move(few));
 }
 
 }  // namespace fathom::inference

@@ -139,6 +139,7 @@ Refusal Searching::refusal(const std::string& name, double promised) const {
 }
 
 void Searching::list_refused() {
+  found_.refused.clear();
   for (const auto& [name, promise] : noted_) {
     if (std::ranges::find(found_.best.names, name) != found_.best.names.end()) continue;
     Refused refused{.name = name, .form = laws_[promise.law].form, .promised = promise.score};

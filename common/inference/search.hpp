@@ -35,6 +35,9 @@ struct Found {
   std::vector<Refused> refused;
   std::optional<FreeForceFound> free_force;
   std::vector<Fitted> near;  ///< other sets of names that are hardly less probable than the best
+  /// Where the best has more names than `few_effects`: what was found with so few.
+  std::vector<Found> fewer;
+  int wanted{};  ///< names of a larger model that leaves something all the same; 0: none
   std::size_t fits{};
   bool cut_short{};         ///< the time was over before all was asked
   double spent{}, given{};  ///< s, of a search that was cut short

@@ -29,6 +29,7 @@ struct Unasked {
 struct Before {
   Start base;
   std::vector<Start> sets;
+  std::vector<Start> more;  ///< of more names than `few_effects`
 };
 
 class Searching {
@@ -62,6 +63,12 @@ class Searching {
   void begin(const Step& step) const;
   /// Scans and fits of so many rounds, this one included.
   void expect_rounds(double rounds);
+  /// Adds names until there are `most` of them or nothing is left that gains enough.
+  void grow(int most);
+  /// What the names are worth: against other names, against none, and against a free force.
+  void settle();
+  /// What no list holds takes many names to imitate, and so does a craft that lacks many: it goes on beyond a few.
+  void go_beyond(const Fitted& grown, const Before* before);
   /// There is time for more.
   bool goes_on();
   [[nodiscard]] const std::vector<model::ActiveEffect>& effects() const;
@@ -114,6 +121,8 @@ class Searching {
   bool swap();
   [[nodiscard]] FreeForceFound free_force_beside(const Fitted& fitted) const;
   static double worth(const FreeForceFound& force);
+  /// Nats that a further name must promise, and gain: a fifth of what no name does yet.
+  [[nodiscard]] double least_of_next() const;
   /// "Something that no list holds" may act in a name's place as well as beside it: both with the free force that is
   /// best there. Names that are not worth their odds over that are none, and the free force stays in their place. First
   /// all together that are worth less than the free force beside them, then each once, the weakest first.
@@ -126,6 +135,9 @@ class Searching {
   /// was found it is less probable.
   [[nodiscard]] Refusal refusal(const std::string& name, double promised) const;
   void list_refused();
+  /// Of the best promise, and then of what was really gained: what promises less has never been the true one. Promises
+  /// are linear, so that a law's own is wrong by a factor of two where its numbers are far from its grid.
+  static constexpr double kFarBehind = 0.2;
   static constexpr double kDoubtful = 5.0;  // times a name's odds: a guess of less is asked of a fit
 
   const likelihood::Problem& problem_;
@@ -137,7 +149,8 @@ class Searching {
   const Deadline& deadline_;
   FittedModels models_;
   Found found_;
-  bool sought_{};  // on stretches already: forms, times and places, and what could stand in another's place
+  double unnamed_{};  // nats that the free force beside few names is worth, less what further names have gained
+  bool sought_{};     // on stretches already: forms, times and places, and what could stand in another's place
   std::map<std::string, Promise> noted_;
   std::map<std::string, double> beside_;      // what each name promised beside the best model, as it was last looked at
   std::map<std::size_t, Promise> promised_;   // by law, in the last look

@@ -69,8 +69,9 @@ void Searching::know(const Searching& ahead) {
 void Searching::take_up(const std::vector<Start>& sets) {
   const std::vector<Fitted> fits = models_.race(sets, {.from = found_.base.score});
   const auto best = std::ranges::max_element(fits, {}, &Fitted::score);
-  if (best == fits.end() || !best->fit.finite || best->score < found_.base.score + thresholds_.name_odds) return;
+  if (best == fits.end() || !best->fit.finite || best->score < found_.best.score + thresholds_.name_odds) return;
   if (best->names.size() < 2 && !counts(*best)) return;
+  unnamed_ -= best->score - found_.best.score;
   found_.best = *best;
   drop();
 }
@@ -93,10 +94,16 @@ Found search(const likelihood::Problem& problem, const model::Scene& scene, cons
   if (found.base.fit.finite) {
     const auto start = [&](const Fitted& fitted) { return on_whole_runs(fitted.fit, *stretches, problem.runs.size()); };
     before.base = start(found.base);
-    if (!found.best.names.empty()) before.sets.push_back(start(found.best));
-    for (const Fitted& fitted : found.near) {
-      if (!fitted.names.empty()) before.sets.push_back(start(fitted));
-    }
+    const auto take = [&](const Fitted& fitted) {
+      const auto names = static_cast<int>(claims(fitted.fit.hypothesis.model.effects));
+      if (!fitted.names.empty()) (names > thresholds.few_effects ? before.more : before.sets).push_back(start(fitted));
+    };
+    const auto take_all = [&](const Found& of) {
+      take(of.best);
+      std::ranges::for_each(of.near, take);
+    };
+    take_all(found);
+    std::ranges::for_each(found.fewer, take_all);
     whole.know(ahead);
   }
   return whole.run(found.base.fit.finite ? &before : nullptr);

@@ -19,9 +19,10 @@ struct Thresholds {
   int fits_per_round{3};         ///< best by score; the true one was among them in every simulated set
   int pairs_per_round{2};
   double search_blocks{6000};  ///< of recordings that are twice as long and longer, on which the search is made first
-  int most_effects{4};         ///< the prior has next to nothing beyond
-  int most_own_flow{6};        ///< forms of what a craft's flow does by nature, beside them: all that it has at once
-  double group_gain{3.0};      ///< nats, after its price, for which a group of features is taken up
+  int few_effects{4};      ///< what no list holds is imitated by as many names: with more, a model must leave nothing
+  int most_effects{8};     ///< the prior has next to nothing beyond
+  int most_own_flow{6};    ///< forms of what a craft's flow does by nature, beside them: all that it has at once
+  double group_gain{3.0};  ///< nats, after its price, for which a group of features is taken up
   int most_groups{5};
   double group_price{2.5};      ///< nats of a variance of unknown order of magnitude
   double searched_price{10.0};  ///< nats more where a moment or a frequency was sought in the data

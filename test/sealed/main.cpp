@@ -226,7 +226,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Draws sealed data sets, has them diagnosed, and keeps the score.", "sealed"};
   app.add_option("--seeds", options.seeds, "A..B or one number (default " + options.seeds + ")");
-  app.add_option("--only", options.only, "an effect's name, or: single clean noise pair foreign mixed unlisted");
+  app.add_option("--only", options.only, "an effect's name, or: single clean noise pair foreign mixed many unlisted");
   app.add_option("--size", options.size)->check(CLI::IsMember({"weak", "medium", "strong"}));
   app.add_option("--class", options.craft_class, "of craft: rov, torpedo, boat, ship or glider; each into an --out")
       ->check(CLI::IsMember(std::vector<std::string>(kClassNames.begin(), kClassNames.end())));

@@ -21,7 +21,7 @@ std::vector<double> numbers_of(const Settings& settings) {
           t.free_force_odds,
           static_cast<double>(t.fits_per_round),
           static_cast<double>(t.pairs_per_round),
-          static_cast<double>(t.most_effects),
+          static_cast<double>(t.few_effects),
           t.group_gain,
           t.group_price,
           t.searched_price,

@@ -102,7 +102,7 @@ TEST_CASE("conclusion: a number that no vehicle has, or one on its bound, leaves
   }
 }
 
-TEST_CASE("conclusion: as many names as the search allows are no claim") {
+TEST_CASE("conclusion: as many names as the search allows are no claim, nor a few where more did not do") {
   Nothing nothing;
   const auto hold = [&](std::initializer_list<const char*> names) {
     Found& found = nothing.conclusion.found;
@@ -115,10 +115,17 @@ TEST_CASE("conclusion: as many names as the search allows are no claim") {
     nothing.conclusion.reasons.clear();
     return nothing.concluded();
   };
-  const Conclusion conclusion = hold({"current", "cubic_drag", "thruster_lag", "wave"});
+  const Conclusion conclusion = hold({"current", "cubic_drag", "thruster_lag", "wave", "payload_change",
+                                      "tether_tension", "wall_effect", "thruster_gain"});
   CHECK(conclusion.verdict == Verdict::unexplained);
   CHECK(caused(conclusion, Cause::kManyNames, ""));
-  CHECK(hold({"current", "cubic_drag", "thruster_lag"}).verdict == Verdict::effect);
+  CHECK(hold({"current", "cubic_drag", "thruster_lag", "wave", "payload_change"}).verdict == Verdict::effect);
+  nothing.conclusion.found.wanted = 6;
+  const Conclusion few = hold({"current", "cubic_drag", "thruster_lag", "wave"});
+  CHECK(few.verdict == Verdict::unexplained);
+  CHECK(caused(few, Cause::kManyNames, ""));
+  nothing.conclusion.found.wanted = 0;
+  CHECK(hold({"current", "cubic_drag", "thruster_lag", "wave"}).verdict == Verdict::effect);
   // What a hull does in oblique flow by its nature is none of them, and need not be sure beside them.
   CHECK(hold({"body_lift", "cross_flow", "cubic_drag", "thruster_lag", "wave"}).verdict == Verdict::effect);
   static_cast<void>(hold({"body_lift", "current"}));

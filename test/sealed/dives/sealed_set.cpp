@@ -149,6 +149,18 @@ std::vector<const Entry*> mixed(const std::vector<const Entry*>& listed, const s
   return chosen;
 }
 
+std::vector<const Entry*> many(std::vector<const Entry*> listed, Random& random) {
+  const auto count = static_cast<std::size_t>(5 + random.below(2));
+  std::vector<const Entry*> chosen;
+  while (chosen.size() < count && !listed.empty()) {
+    const auto at = listed.begin() + random.below(static_cast<int>(listed.size()));
+    if (std::ranges::all_of(chosen, [&](const Entry* other) { return goes_together(**at, *other); }))
+      chosen.push_back(*at);
+    listed.erase(at);
+  }
+  return chosen;
+}
+
 }  // namespace
 
 Plan make_plan(std::uint64_t seed, const Wish& wish) {
@@ -204,7 +216,9 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
       if (!wish.size && plan.size == Size::kWeak) plan.size = Size::kMedium;
       break;
     case Kind::kMixed:
-      chosen = mixed(listed_here, foreign_of(wish.craft_class), random);
+    case Kind::kMany:
+      chosen = plan.kind == Kind::kMixed ? mixed(listed_here, foreign_of(wish.craft_class), random)
+                                         : many(listed_here, random);
       for (std::size_t i = 0; i < chosen.size() && !wish.size; ++i)
         plan.sizes.push_back(static_cast<Size>(random.below(static_cast<int>(kShares.size()))));
       break;

@@ -8,15 +8,16 @@
 namespace fathom::sealed {
 
 /// kMixed: two listed effects beside one that no list holds, each of a size of its own, as real craft have them.
-enum class Kind { kSingle, kClean, kNoise, kPair, kForeign, kMixed };
+/// kMany: five or six listed ones, each of a size of its own.
+enum class Kind { kSingle, kClean, kNoise, kPair, kForeign, kMixed, kMany };
 enum class Size { kWeak, kMedium, kStrong };
-constexpr std::array<const char*, 6> kKindNames{"single", "clean", "noise", "pair", "foreign", "mixed"};
+constexpr std::array<const char*, 7> kKindNames{"single", "clean", "noise", "pair", "foreign", "mixed", "many"};
 constexpr std::array<const char*, 3> kSizeNames{"weak", "medium", "strong"};
 constexpr std::array<double, 3> kShares{0.05, 0.15, 0.40};  ///< of the applied wrench
 
 /// What the caller wants instead of what the number would draw.
 struct Wish {
-  std::string effect;  ///< or "clean", "pair", "foreign", "single", "mixed"; "unlisted": one of those in turn
+  std::string effect;  ///< or "clean", "pair", "foreign", "single", "mixed", "many"; "unlisted": one of those in turn
   std::optional<Size> size;
   CraftClass craft_class{};
   bool new_recording{false};  ///< a file for validation in any case

@@ -165,6 +165,18 @@ TEST_CASE("sealed set: two effects of the list beside one of no list, each of it
   CHECK(weak.size == Size::kWeak);
 }
 
+TEST_CASE("sealed set: five or six effects of the list, of which each pair goes together") {
+  std::set<std::size_t> counts;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const Plan plan = make_plan(seed, {.effect = "many"});
+    counts.insert(plan.names.size());
+    CHECK(plan.sizes.size() == plan.names.size());
+    CHECK(std::set(plan.names.begin(), plan.names.end()).size() == plan.names.size());
+    CHECK(std::ranges::count_if(plan.names, [](const std::string& name) { return name.starts_with("sensor_"); }) <= 1);
+  }
+  CHECK(counts == std::set<std::size_t>{5, 6});
+}
+
 TEST_CASE("sealed set: nobody beats the true simulator, and more signals never widen the bound") {
   const SealedSet clean = set_of(8, "clean", Size::kMedium);
   const Bound bound = cramer_rao(clean);

@@ -84,6 +84,10 @@ std::string outcome_of(const Score& score, const std::vector<Named>& named) {
                                             : "hesitant";
   }
   if (named.empty()) return "missed";
+  if (score.kind == "many") {
+    if (score.strangers > 0) return "wrong";
+    return std::ranges::all_of(score.truth, covered) ? "whole" : "part";
+  }
   if (score.kind == "pair" || score.kind == "mixed") {
     if (score.kind == "mixed" && score.strangers > 0) return "wrong";
     const auto right = std::count_if(score.truth.begin(), score.truth.end(), covered);

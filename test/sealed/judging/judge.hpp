@@ -24,7 +24,7 @@ struct Score {
   std::vector<std::string> found;  ///< accepted names, in the tool's order
   std::string verdict;
   /// single: named, alias, later, missed, wrong.  pair and mixed: whole, half, missed, wrong (mixed: also where a wrong
-  /// name stands beside right ones).  clean and noise: silent, false alarm.  foreign: refused, hesitant, wrong name.
+  /// name stands beside right ones).  many: whole, part, missed, wrong.  clean and noise: silent, false alarm.  foreign: refused, hesitant, wrong name.
   /// Any: failed.
   std::string outcome;
   bool good{};             ///< the outcome that is wished

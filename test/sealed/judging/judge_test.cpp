@@ -89,6 +89,12 @@ TEST_CASE("judge: pairs, silence and strangers") {
 }
 
 TEST_CASE("judge: beside something of no list right names are good, and a wrong one spoils them") {
+  const Json many = truth_of("many", {"current", "thruster_lag", "payload_change"});
+  CHECK(judged(many, {effect("current"), effect("payload_change"), effect("thruster_lag")}, "effect").outcome == "whole");
+  CHECK(judged(many, {effect("current"), effect("thruster_lag")}, "unexplained").outcome == "part");
+  CHECK_FALSE(judged(many, {effect("current"), effect("thruster_lag")}, "unexplained").good);
+  CHECK(judged(many, {effect("current"), effect("thruster_lag"), effect("wave")}, "effect").outcome == "wrong");
+  CHECK(judged(many, {}, "unexplained").outcome == "missed");
   const Json mixed = truth_of("mixed", {"current", "thruster_lag", "rope_wrapping"});
   CHECK(judged(mixed, {effect("current"), effect("thruster_lag")}, "unexplained").outcome == "whole");
   CHECK(judged(mixed, {effect("current")}, "unexplained").outcome == "half");

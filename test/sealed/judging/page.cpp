@@ -102,6 +102,8 @@ void add_targets(std::span<const Score> scores, std::string& text) {
   add_row(text, "the same: a wrong name accepted", "-",
           percent(std::ranges::count_if(scores, [&](const Score& s) { return mixed(s) && s.outcome == "wrong"; }),
                   std::ranges::count_if(scores, mixed)));
+  add_row(text, "five or six listed effects at once: all named, and nothing else", "-",
+          good_of(scores, [](const Score& s) { return s.kind == "many"; }));
   long strangers = 0, sets = 0, alarms = 0, quiet = 0, failed = 0, foreign = 0, named = 0, refused = 0, worse = 0,
        compared = 0, adequate = 0, unexplained = 0;
   for (const Score& s : scores) {
