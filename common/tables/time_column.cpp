@@ -20,6 +20,7 @@ namespace {
 constexpr double kMaxSeconds = 9e9;      // beyond, a double no longer resolves a microsecond
 constexpr double kGapPeriods = 5.0;      // a step of this many median periods is reported as a gap
 constexpr double kSlowestStep = 2.0;     // s between rows: slower, a finer unit is likelier than so slow a recorder
+constexpr double kFastestStep = 1e-3;    // s between rows: no recorder of a vehicle's motion writes faster
 constexpr double kSlowestMotion = 60.0;  // s between rows: slower, no vehicle's motion is seen
 constexpr double kDay = 86400.0;         // s
 constexpr double kClocksDiffer = 0.005;  // of the rate: no crystal is off so far
@@ -57,6 +58,21 @@ void check_step(const CsvTable& table, const Column& column, double factor, bool
   throw InputError((column.where.empty() ? "" : column.where + ": ") + table.path + ": column '" + column.name +
                    "': the median step between rows is " + in_seconds(median_step) +
                    ", too slow for the motion of any vehicle; " + remedy);
+}
+
+/// Refuses what counts from 1970 where the map names a finer unit than it counts in: its rows would lie too close.
+void check_epoch(const CsvTable& table, const Column& column, double factor, double first, double median_step) {
+  if (factor >= 1.0 || median_step <= 0.0 || median_step >= kFastestStep) return;
+  constexpr std::array<std::pair<const char*, double>, 3> kCoarserUnits{{{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}};
+  for (const auto& [unit, coarser] : kCoarserUnits) {
+    const double times = coarser / factor;
+    if (times < 2.0 || !is_since_1970(times * first) || times * median_step > kSlowestMotion) continue;
+    char steps[96];
+    std::snprintf(steps, sizeof steps, "the median step between rows is %.3g s by its unit", median_step);
+    throw InputError((column.where.empty() ? "" : column.where + ": ") + table.path + ": column '" + column.name +
+                     "': " + steps + ", faster than any recorder writes; it counts from 1970 in " + unit +
+                     ": time: {column: " + column.name + ", unit: " + unit + "}");
+  }
 }
 
 /// Notes the longest gap; the median step, in s.
@@ -262,6 +278,8 @@ Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnMap& map, s
   const double typical = report_longest_gap(rows.utime, notes);
   if (time.first().name == kOwnTime) return rows;  // a topic's own time is known to be one
   check_step(table, time.first(), time.factor(), time.dated(), typical);
+  if (!rows.utime.empty())
+    check_epoch(table, time.first(), time.factor(), seconds_between(0, rows.utime.front()), typical);
   compare_clocks(table, time, rows, notes);
   return rows;
 }

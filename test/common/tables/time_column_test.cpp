@@ -67,6 +67,25 @@ TEST_CASE("time: nanoseconds, by the map, and by their size without one") {
   CHECK_THROWS_WITH_AS(import_text(csv, "{column: t, unit: s}"), doctest::Contains("unit: ns}"), InputError);
 }
 
+TEST_CASE("time: seconds since 1970 that the map calls milliseconds are refused, with the unit that they are in") {
+  const auto complaint = [](const std::string& csv, const std::string& time) {
+    try {
+      static_cast<void>(import_text(csv, time));
+    } catch (const InputError& error) {
+      return std::string{error.what()};
+    }
+    return std::string{"no complaint"};
+  };
+  const std::string dated = "t,z\n1748338850.18,1\n1748338850.22,2\n1748338850.26,3\n1748338850.30,4\n";
+  CHECK(complaint(dated, "{column: t, unit: s}") == "no complaint");
+  const std::string told = complaint(dated, "{column: t, unit: ms}");
+  CHECK(told.find("the median step between rows is 4e-05 s by its unit") != std::string::npos);
+  CHECK(told.ends_with("it counts from 1970 in s: time: {column: t, unit: s}"));
+  // Milliseconds of a computer that was on for twenty days are what they are said to be.
+  CHECK(complaint("t,z\n1748338850,1\n1748338890,2\n1748338930,3\n1748338970,4\n", "{column: t, unit: ms}") ==
+        "no complaint");
+}
+
 TEST_CASE("time: seconds beside nanoseconds are added, stated or found by their names") {
   const std::string csv = "stamp.sec,stamp.nanosec,z\n1748338850,123456789,1\n1748338850,223456789,2\n";
   const Imported stated = import_text(csv, "{columns: [stamp.sec, stamp.nanosec], units: [s, ns]}");
