@@ -24,6 +24,12 @@ constexpr double kHorizon = 5.0;           // s
 constexpr double kCloseUp = 60.0;          // s: six windows of 10 s
 constexpr std::size_t kMostPoints = 1200;  // one per pixel of a wide screen is plenty
 
+/// What every craft of its kind has, and the base model has not: no fault, and nothing to look for.
+bool of_own_flow(const EffectFound& effect) {
+  const model::Effect* known = model::find_effect(effect.name);
+  return known != nullptr && known->traits().own_flow;
+}
+
 struct Meaning {
   std::string css;
   std::string words;
@@ -33,12 +39,32 @@ Meaning meaning(const std::string& verdict, bool wiring) {
   if (wiring) return {"unexplained", "The vehicle's file seems to have other thrusters than the vehicle"};
   if (verdict == "adequate") return {"adequate", "The model is adequate: nothing is missing that this data can show"};
   if (verdict == "effect") return {"effect", "Something was missing, and it was found"};
-  if (verdict == "ambiguous") return {"ambiguous", "Something is missing, but this data fits several causes"};
   if (verdict == "unexplained") return {"unexplained", "Something is missing, and none of the known causes fits"};
   if (verdict == "no_model")
     return {"unexplained", "The model does not follow its thrust: numbers of such axes are withheld"};
   if (verdict == "unjudged" || verdict == "not_judged") return {"ambiguous", "These runs show too little to judge by"};
   return {"other", verdict.empty() ? "No verdict" : "Verdict: " + verdict};
+}
+
+/// What the craft lacks and what its sensors say, of causes that are claimed.
+bool claimed(const EffectFound& effect) { return effect.accepted && !of_own_flow(effect); }
+
+/// Of several causes some may be sure, and of one that stands alone it is its evidence that is weak.
+std::string in_doubt(const DiagnosisResult& result) {
+  constexpr double kSure = 0.9;  // as the verdict "effect" asks of each
+  std::size_t sure = 0, doubtful = 0, shared = 0;
+  for (const EffectFound& effect : result.effects) {
+    if (!claimed(effect)) continue;
+    const bool weak = effect.probability < kSure;
+    ++(weak ? doubtful : sure);
+    if (weak && !effect.alternatives.empty()) ++shared;
+  }
+  if (doubtful == 0) return "Something is missing, but this data fits several causes";
+  if (sure == 0)
+    return shared > 0 ? "Something is missing, but this data fits several causes"
+                      : "Something is missing, and the evidence for its cause is weak";
+  return "Something was missing: " + std::to_string(sure) + (sure == 1 ? " cause is" : " causes are") +
+         " found, and of " + std::to_string(doubtful) + " more this data is not sure";
 }
 
 /// Both parts of a divided run are one.
@@ -108,12 +134,6 @@ std::string picture(const DiagnosisReport& report, std::optional<std::size_t> ax
 bool of_sensor(const EffectFound& effect) {
   const model::Effect* known = model::find_effect(effect.name);
   return known != nullptr && known->measures();
-}
-
-/// What every craft of its kind has, and the base model has not: no fault, and nothing to look for.
-bool of_own_flow(const EffectFound& effect) {
-  const model::Effect* known = model::find_effect(effect.name);
-  return known != nullptr && known->traits().own_flow;
 }
 
 std::string causes(const DiagnosisResult& result) {
@@ -191,6 +211,7 @@ std::vector<std::size_t> axes_without_numbers(const DiagnosisResult& result) {
 std::string front_section(const DiagnosisReport& report, Album& album) {
   const DiagnosisResult& result = report.result;
   Meaning said = meaning(result.verdict, result.wiring.has_value());
+  if (result.verdict == "ambiguous" && !result.wiring) said = {"ambiguous", in_doubt(result)};
   std::optional<std::size_t> telling = telling_axis(result);
   if (result.verdict == "no_model" && !result.wiring) {
     std::string names;
@@ -201,9 +222,7 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
     if (!names.empty())
       said.words = "The model does not follow its thrust along " + names + ": those numbers are withheld";
   }
-  if (result.verdict == "effect" && std::ranges::all_of(result.effects, [](const EffectFound& effect) {
-        return !effect.accepted || of_own_flow(effect);
-      }))
+  if (result.verdict == "effect" && std::ranges::none_of(result.effects, claimed))
     said = {"adequate", "Nothing is missing but what the flow past this craft does, and that was found"};
   if (result.verdict == "unexplained" && !result.wiring && result.correction && result.correction->adopted)
     said.words = "None of the known causes fits: what is missing was learned";

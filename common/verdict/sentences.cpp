@@ -28,10 +28,16 @@ std::string title(std::string name) {
   return name;
 }
 
-std::string names(const Conclusion& conclusion) {
+/// Those that are as sure as a claim must be, those that are not, or all.
+enum class Which { kAll, kSure, kDoubtful };
+std::string names(const Conclusion& conclusion, Which which = Which::kAll) {
   std::string all;
-  const auto& effects = conclusion.found.best.fit.hypothesis.model.effects;
-  for (const std::size_t e : surest_first(conclusion.found)) {
+  const inference::Found& found = conclusion.found;
+  const auto& effects = found.best.fit.hypothesis.model.effects;
+  for (const std::size_t e : surest_first(found)) {
+    const bool sure = by_nature(effects[e]) ||
+                      found.probability[e] * found.reliability[e] >= inference::Thresholds{}.name_probability;
+    if (which != Which::kAll && sure != (which == Which::kSure)) continue;
     const double odds = conclusion.found.odds[e];
     all += (all.empty() ? "" : ", ") + title(std::string(effects[e].effect->name()));
     if (!effects[e].variant_name.empty()) all += " (" + effects[e].variant_name + ")";
@@ -84,10 +90,10 @@ std::string unexplained(const Conclusion& conclusion) {
                      slow->of.c_str(), slow->value);
   }
   if (const Reason* many = reason(conclusion, Cause::kManyNames)) {
-    sentence += text(
-        "It takes %.0f listed effects to describe these runs, as many as are tried: something unlisted is "
-        "likelier than all of them. ",
-        many->value);
+    sentence += many->value > many->threshold
+                    ? text("%.0f listed effects at once leave something all the same: ", many->value)
+                    : text("It takes %.0f listed effects to describe these runs, as many as are tried: ", many->value);
+    sentence += "something unlisted is likelier than all of them. ";
   }
   if (const Reason* misled = reason(conclusion, Cause::kNamesMislead)) {
     sentence += text(
@@ -167,10 +173,12 @@ std::string paragraph(const Conclusion& conclusion) {
       words = "Found: " + names(conclusion) + ". " + look_alikes(conclusion);
       break;
     case Verdict::ambiguous: {
-      words = reason(conclusion, Cause::kWeakEvidence) != nullptr
-                  ? "Something is missing, and the evidence for a name is weak. Likeliest: "
-                  : "Something is missing, and more than one name fits it. Likeliest: ";
-      words += names(conclusion) + ". ";
+      const std::string why = reason(conclusion, Cause::kWeakEvidence) != nullptr ? "the evidence for a name is weak"
+                                                                                  : "more than one name fits it";
+      const std::string sure = names(conclusion, Which::kSure), doubtful = names(conclusion, Which::kDoubtful);
+      words = sure.empty() || doubtful.empty()
+                  ? "Something is missing, and " + why + ". Likeliest: " + names(conclusion) + ". "
+                  : "Found: " + sure + ". More is missing, and " + why + ". Likeliest: " + doubtful + ". ";
       for (const std::string& rival : conclusion.found.rival) {
         if (!rival.empty()) words += "It may be " + title(rival) + " as well. ";
       }

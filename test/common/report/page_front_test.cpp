@@ -123,6 +123,20 @@ TEST_CASE("The first screen calls what is kept but hardly the cause a stand-in")
   CHECK(has(seen(to_html(report)), "A stand-in, hardly the cause: "));
 }
 
+TEST_CASE("Of several causes the first screen says how many are sure; of one alone, why it is not") {
+  auto report = fathom::test::made_up_report({.samples = 600});
+  auto& effects = report.result.effects;
+  report.result.verdict = "ambiguous";
+  effects = {{.name = "current", .probability = 0.98}, {.name = "wave", .probability = 0.7}};
+  CHECK(has(seen(to_html(report)), "Something was missing: 1 cause is found, and of 1 more this data is not sure"));
+  effects.push_back({.name = "cubic_drag", .probability = 0.95});
+  CHECK(has(seen(to_html(report)), "2 causes are found, and of 1 more this data is not sure"));
+  effects = {{.name = "wave", .probability = 0.7}};
+  CHECK(has(seen(to_html(report)), "Something is missing, and the evidence for its cause is weak"));
+  effects.front().alternatives = {{.name = "current"}};
+  CHECK(has(seen(to_html(report)), "Something is missing, but this data fits several causes"));
+}
+
 TEST_CASE("What sensors do wrong is no cause of the motion, and nothing was added to the model for it") {
   auto report = fathom::test::made_up_report({.samples = 600});
   report.result.effects = {

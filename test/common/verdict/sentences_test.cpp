@@ -31,3 +31,24 @@ TEST_CASE("sentences: a named effect's look-alike is told beside it, with what t
   conclusion.verdict = inference::Verdict::adequate;
   CHECK(verdict::paragraph(conclusion).find("denser") == std::string::npos);
 }
+
+TEST_CASE("sentences: where one of several names is doubtful, those that are sure are told as found") {
+  inference::Conclusion conclusion;
+  conclusion.verdict = inference::Verdict::ambiguous;
+  conclusion.reasons = {{inference::Cause::kWeakEvidence, 0.7, 0.9, ""}};
+  auto& found = conclusion.found;
+  for (const char* name : {"current", "wave"})
+    found.best.fit.hypothesis.model.effects.push_back({.effect = model::find_effect(name), .variant_name = ""});
+  found.odds = {500.0, 9.0};
+  found.size = {0.2, 0.1};
+  found.probability = {1.0, 1.0};
+  found.reliability = {0.95, 0.7};
+  found.rival = {"", ""};
+  const std::string told = verdict::paragraph(conclusion);
+  CHECK(
+      told.starts_with("Found: current: 20 % of the applied force, log odds 500. More is missing, and the evidence for "
+                       "a name is weak. Likeliest: wave: 10 % of the applied force, log odds 9. "));
+  found.reliability = {0.7, 0.7};
+  CHECK(verdict::paragraph(conclusion)
+            .starts_with("Something is missing, and the evidence for a name is weak. Likeliest: current: 20 %"));
+}
