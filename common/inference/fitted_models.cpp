@@ -12,7 +12,7 @@
 namespace fathom::inference {
 namespace {
 
-constexpr std::array kCountPrior{0.5, 0.3, 0.12, 0.05, 0.02, 0.006, 0.002, 0.001, 0.001};  // of 0 to 8 effects
+constexpr std::array kCountPrior{0.5, 0.3, 0.13, 0.05, 0.012, 0.005, 0.002, 0.0007, 0.0003};  // of 0 to 8 effects
 constexpr double kOwnFlowPrior = 0.5;  // of a form of what craft that live by their flow have
 constexpr double kNever = -1e300;      // score of what could not be fitted
 

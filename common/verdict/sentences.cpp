@@ -35,7 +35,7 @@ std::string names(const Conclusion& conclusion, Which which = Which::kAll) {
   const inference::Found& found = conclusion.found;
   const auto& effects = found.best.fit.hypothesis.model.effects;
   for (const std::size_t e : surest_first(found)) {
-    const bool sure = by_nature(effects[e]) ||
+    const bool sure = inference::by_nature(effects[e]) ||
                       found.probability[e] * found.reliability[e] >= inference::Thresholds{}.name_probability;
     if (which != Which::kAll && sure != (which == Which::kSure)) continue;
     const double odds = conclusion.found.odds[e];
