@@ -113,8 +113,10 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     unexplained = true;
   }
   const auto names = static_cast<int>(claims(found.best.fit.hypothesis.model.effects));
-  if (found.wanted > 0 || names >= thresholds.most_effects) {
-    const int most = found.wanted > 0 ? thresholds.few_effects : thresholds.most_effects;
+  // Whether many leave nothing is not known of a search that was cut short.
+  const bool few = found.wanted > 0 || found.cut_short;
+  const int most = few ? thresholds.few_effects : thresholds.most_effects;
+  if (found.wanted > 0 || names >= most) {
     reasons.push_back(
         {Cause::kManyNames, static_cast<double>(std::max(names, found.wanted)), static_cast<double>(most), ""});
     unexplained = true;
@@ -240,7 +242,8 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
   const bool leaves = conclusion.verdict == Verdict::unexplained || conclusion.verdict == Verdict::no_model;
   if (!leaves || conclusion.found.fewer.empty()) return conclusion;
   Found few = std::move(conclusion.found.fewer.front());
-  few.wanted = static_cast<int>(claims(conclusion.found.best.fit.hypothesis.model.effects));
+  few.ended_as(conclusion.found);
+  if (!few.cut_short) few.wanted = static_cast<int>(claims(conclusion.found.best.fit.hypothesis.model.effects));
   return concluding.from(std::move(few));
 }
 

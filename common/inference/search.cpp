@@ -83,9 +83,7 @@ void Searching::go_beyond(const Fitted& grown, const Before* before) {
   unnamed_ = worth(*few.free_force);
   if (before != nullptr) take_up(before->more);
   grow(thresholds_.most_effects);
-  few.cut_short = found_.cut_short;
-  few.spent = found_.spent;
-  few.given = found_.given;
+  few.ended_as(found_);
   if (found_.best.score <= std::max(grown.score, few.best.score)) {
     found_ = std::move(few);
     in_place_ = in_place;

@@ -41,6 +41,13 @@ struct Found {
   std::size_t fits{};
   bool cut_short{};         ///< the time was over before all was asked
   double spent{}, given{};  ///< s, of a search that was cut short
+
+  /// Of one search, whose time was over or not.
+  void ended_as(const Found& other) {
+    cut_short = other.cut_short;
+    spent = other.spent;
+    given = other.given;
+  }
 };
 
 /// Long recordings: on stretches first, and what was found there on all of them.

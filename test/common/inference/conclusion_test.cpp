@@ -125,6 +125,9 @@ TEST_CASE("conclusion: as many names as the search allows are no claim, nor a fe
   CHECK(few.verdict == Verdict::unexplained);
   CHECK(caused(few, Cause::kManyNames, ""));
   nothing.conclusion.found.wanted = 0;
+  nothing.conclusion.found.cut_short = true;
+  CHECK(hold({"current", "cubic_drag", "thruster_lag", "wave"}).verdict == Verdict::unexplained);
+  nothing.conclusion.found.cut_short = false;
   CHECK(hold({"current", "cubic_drag", "thruster_lag", "wave"}).verdict == Verdict::effect);
   // What a hull does in oblique flow by its nature is none of them, and need not be sure beside them.
   CHECK(hold({"body_lift", "cross_flow", "cubic_drag", "thruster_lag", "wave"}).verdict == Verdict::effect);
