@@ -53,6 +53,74 @@ double length_of(const likelihood::Problem& problem) {
   return length;
 }
 
+/// What follows from one end of the search.
+class Concluding {
+ public:
+  Concluding(const likelihood::Problem& problem, const model::Scene& scene, std::span<const Trial> trials,
+             const Settings& settings, const Progress& progress, const Deadline& deadline)
+      : problem_{problem},
+        scene_{scene},
+        trials_{trials},
+        settings_{settings},
+        progress_{progress},
+        deadline_{deadline} {}
+
+  Conclusion from(Found found) const {
+    Conclusion conclusion;
+    conclusion.found = std::move(found);
+    if (conclusion.found.best.fit.finite) {
+      describe(conclusion);
+      report(conclusion);
+    }
+    conclude(problem_, settings_.thresholds, conclusion);
+    return conclusion;
+  }
+
+ private:
+  void describe(Conclusion& conclusion) const {
+    const likelihood::Fit& best = conclusion.found.best.fit;
+    const Seen seen = see(problem_, best, settings_.threads);
+    conclusion.followed = followed(problem_, seen);
+    for (std::size_t e = 0; e < best.hypothesis.model.effects.size(); ++e)
+      conclusion.modulation.push_back(modulation_of(problem_, seen, scene_, e, settings_.thresholds));
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem_.simulated); ++axis) {
+      const likelihood::AxisNoise& noise = best.noise[axis];
+      const int of = problem_.axes[axis];
+      conclusion.random.push_back({of, noise[likelihood::kForce], noise[likelihood::kForceMemory],
+                                   noise[likelihood::kForce] / std::max(seen.applied[of], 1e-9)});
+    }
+    for (const model::ActiveEffect& active : best.hypothesis.model.effects) {
+      const model::Unlisted other = active.effect->looks_like(active.theta, active.variant, scene_);
+      if (!other.what.empty())
+        conclusion.look_alikes.push_back(
+            {std::string{active.effect->name()}, std::string{other.what}, std::string{other.told_by}});
+    }
+  }
+
+  void report(Conclusion& conclusion) const {
+    const Found& found = conclusion.found;
+    double of_base = 0.0;
+    if (!found.best.names.empty()) progress_.expect(kHorizonFit.phase, 2, kHorizonFit.weight);
+    conclusion.reported = reported(found.best.fit, conclusion.disagreement);
+    conclusion.reported_base = found.best.names.empty() ? conclusion.reported : reported(found.base.fit, of_base);
+  }
+
+  likelihood::Fit reported(const likelihood::Fit& fit, double& gain) const {
+    progress_.begin(kHorizonFit.phase, kHorizonFit.what);
+    likelihood::Fit by = deadline_.over() ? fit : by_horizon(problem_, fit, settings_.threads);
+    gain = deadline_.over() ? 0.0 : fall_of_error(problem_, trials_, fit, by);
+    progress_.done(kHorizonFit.phase);
+    return gain > settings_.thresholds.disagreement ? by : fit;
+  }
+
+  const likelihood::Problem& problem_;
+  const model::Scene& scene_;
+  std::span<const Trial> trials_;
+  const Settings& settings_;
+  const Progress& progress_;
+  const Deadline& deadline_;
+};
+
 }  // namespace
 
 void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, Conclusion& conclusion) {
@@ -150,78 +218,6 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
   reasons.push_back({Cause::kNothingFound, promised, thresholds.name_odds, ""});
   conclusion.verdict = found.cut_short ? Verdict::not_judged : Verdict::adequate;
 }
-
-namespace {
-
-/// What follows from one end of the search.
-class Concluding {
- public:
-  Concluding(const likelihood::Problem& problem, const model::Scene& scene, std::span<const Trial> trials,
-             const Settings& settings, const Progress& progress, const Deadline& deadline)
-      : problem_{problem},
-        scene_{scene},
-        trials_{trials},
-        settings_{settings},
-        progress_{progress},
-        deadline_{deadline} {}
-
-  Conclusion from(Found found) const {
-    Conclusion conclusion;
-    conclusion.found = std::move(found);
-    if (conclusion.found.best.fit.finite) {
-      describe(conclusion);
-      report(conclusion);
-    }
-    conclude(problem_, settings_.thresholds, conclusion);
-    return conclusion;
-  }
-
- private:
-  void describe(Conclusion& conclusion) const {
-    const likelihood::Fit& best = conclusion.found.best.fit;
-    const Seen seen = see(problem_, best, settings_.threads);
-    conclusion.followed = followed(problem_, seen);
-    for (std::size_t e = 0; e < best.hypothesis.model.effects.size(); ++e)
-      conclusion.modulation.push_back(modulation_of(problem_, seen, scene_, e, settings_.thresholds));
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem_.simulated); ++axis) {
-      const likelihood::AxisNoise& noise = best.noise[axis];
-      const int of = problem_.axes[axis];
-      conclusion.random.push_back({of, noise[likelihood::kForce], noise[likelihood::kForceMemory],
-                                   noise[likelihood::kForce] / std::max(seen.applied[of], 1e-9)});
-    }
-    for (const model::ActiveEffect& active : best.hypothesis.model.effects) {
-      const model::Unlisted other = active.effect->looks_like(active.theta, active.variant, scene_);
-      if (!other.what.empty())
-        conclusion.look_alikes.push_back(
-            {std::string{active.effect->name()}, std::string{other.what}, std::string{other.told_by}});
-    }
-  }
-
-  void report(Conclusion& conclusion) const {
-    const Found& found = conclusion.found;
-    double of_base = 0.0;
-    if (!found.best.names.empty()) progress_.expect(kHorizonFit.phase, 2, kHorizonFit.weight);
-    conclusion.reported = reported(found.best.fit, conclusion.disagreement);
-    conclusion.reported_base = found.best.names.empty() ? conclusion.reported : reported(found.base.fit, of_base);
-  }
-
-  likelihood::Fit reported(const likelihood::Fit& fit, double& gain) const {
-    progress_.begin(kHorizonFit.phase, kHorizonFit.what);
-    likelihood::Fit by = deadline_.over() ? fit : by_horizon(problem_, fit, settings_.threads);
-    gain = deadline_.over() ? 0.0 : fall_of_error(problem_, trials_, fit, by);
-    progress_.done(kHorizonFit.phase);
-    return gain > settings_.thresholds.disagreement ? by : fit;
-  }
-
-  const likelihood::Problem& problem_;
-  const model::Scene& scene_;
-  std::span<const Trial> trials_;
-  const Settings& settings_;
-  const Progress& progress_;
-  const Deadline& deadline_;
-};
-
-}  // namespace
 
 Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, const Settings& settings,
                  const Progress& progress) {

@@ -102,8 +102,8 @@ Found search(const likelihood::Problem& problem, const model::Scene& scene, cons
       take(of.best);
       std::ranges::for_each(of.near, take);
     };
-    take_all(found);
     std::ranges::for_each(found.fewer, take_all);
+    take_all(found);
     whole.know(ahead);
   }
   return whole.run(found.base.fit.finite ? &before : nullptr);

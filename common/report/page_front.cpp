@@ -51,7 +51,7 @@ bool claimed(const EffectFound& effect) { return effect.accepted && !of_own_flow
 
 /// Of several causes some may be sure, and of one that stands alone it is its evidence that is weak.
 std::string in_doubt(const DiagnosisResult& result) {
-  constexpr double kSure = 0.9;  // as the verdict "effect" asks of each
+  constexpr double kSure = 0.9;  // as inference::Thresholds::name_probability, which this room does not see
   std::size_t sure = 0, doubtful = 0, shared = 0;
   for (const EffectFound& effect : result.effects) {
     if (!claimed(effect)) continue;

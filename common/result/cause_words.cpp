@@ -13,7 +13,7 @@ constexpr std::array kWords{
     CauseWords{"rivals", "probability", "The data fits more than one name", false},
     CauseWords{"free_force", "log odds", "A force acts that no listed effect explains"},
     CauseWords{"slow_random_force", "memory [s]", "A random force remembers itself for too long to be noise"},
-    CauseWords{"many_names", "names", "Many names do not do: something is left all the same, as of what no list holds"},
+    CauseWords{"many_names", "names", "Many names are not enough: something is left all the same, as of what no list holds"},
     CauseWords{"not_following", "fraction of the acceleration", "The model does not follow its thrust", false},
     CauseWords{"absurd_number", "size over its prior's", "A number lies where none can be"},
     CauseWords{"too_short", "s of data", "The runs are too short to judge by", false},

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -25,7 +26,8 @@ constexpr double kSlowestMotion = 60.0;  // s between rows: slower, no vehicle's
 constexpr double kDay = 86400.0;         // s
 constexpr double kClocksDiffer = 0.005;  // of the rate: no crystal is off so far
 constexpr double kFewestSteps = 20.0;    // of a clock that may be written in whole seconds
-constexpr std::array<std::pair<const char*, double>, 3> kFinerUnits{{{"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}}};
+constexpr std::array<std::pair<const char*, double>, 4> kUnits{{{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}}};
+constexpr auto kFinerUnits = std::span{kUnits}.subspan<1>();
 
 std::string lower(std::string_view text) {
   std::string copy(text);
@@ -44,6 +46,11 @@ std::string written(const Column& column, const char* unit) {
          ": time: {column: " + column.name + ", unit: " + unit + "}";
 }
 
+std::string complaint_of(const CsvTable& table, const Column& column) {
+  return (column.where.empty() ? "" : column.where + ": ") + table.path + ": column '" + column.name +
+         "': the median step between rows is ";
+}
+
 /// Refuses rows too far apart to be seconds, before anything is laid on a grid that long.
 /// `dated`: by their size or as dates, they can be nothing else than they are said to be (a glider writes its flight
 /// every four seconds).
@@ -55,23 +62,19 @@ void check_step(const CsvTable& table, const Column& column, double factor, bool
     remedy = std::string("is it in ") + unit + "? " + written(column, unit);
     break;
   }
-  throw InputError((column.where.empty() ? "" : column.where + ": ") + table.path + ": column '" + column.name +
-                   "': the median step between rows is " + in_seconds(median_step) +
+  throw InputError(complaint_of(table, column) + in_seconds(median_step) +
                    ", too slow for the motion of any vehicle; " + remedy);
 }
 
 /// Refuses what counts from 1970 where the map names a finer unit than it counts in: its rows would lie too close.
 void check_epoch(const CsvTable& table, const Column& column, double factor, double first, double median_step) {
   if (factor >= 1.0 || median_step <= 0.0 || median_step >= kFastestStep) return;
-  constexpr std::array<std::pair<const char*, double>, 3> kCoarserUnits{{{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}};
-  for (const auto& [unit, coarser] : kCoarserUnits) {
+  for (const auto& [unit, coarser] : kUnits) {
     const double times = coarser / factor;
     if (times < 2.0 || !is_since_1970(times * first) || times * median_step > kSlowestMotion) continue;
-    char steps[96];
-    std::snprintf(steps, sizeof steps, "the median step between rows is %.3g s by its unit", median_step);
-    throw InputError((column.where.empty() ? "" : column.where + ": ") + table.path + ": column '" + column.name +
-                     "': " + steps + ", faster than any recorder writes; it counts from 1970 in " + unit +
-                     ": time: {column: " + column.name + ", unit: " + unit + "}");
+    throw InputError(complaint_of(table, column) + std::to_string(std::lround(1e6 * median_step)) +
+                     " us by its unit, faster than any recorder writes; it counts from 1970 in " + unit + ". " +
+                     written(column, unit));
   }
 }
 

@@ -90,10 +90,16 @@ std::string unexplained(const Conclusion& conclusion) {
                      slow->of.c_str(), slow->value);
   }
   if (const Reason* many = reason(conclusion, Cause::kManyNames)) {
-    sentence += many->value > many->threshold
-                    ? text("%.0f listed effects at once leave something all the same: ", many->value)
-                    : text("It takes %.0f listed effects to describe these runs, as many as are tried: ", many->value);
-    sentence += "something unlisted is likelier than all of them. ";
+    sentence +=
+        many->value > many->threshold
+            ? text(
+                  "%.0f listed effects at once leave something all the same: something unlisted is likelier than "
+                  "all of them. ",
+                  many->value)
+            : text(
+                  "It takes %.0f listed effects to describe these runs, as many as were tried: something "
+                  "unlisted may be behind all of them. ",
+                  many->value);
   }
   if (const Reason* misled = reason(conclusion, Cause::kNamesMislead)) {
     sentence += text(
