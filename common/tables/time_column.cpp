@@ -66,16 +66,21 @@ void check_step(const CsvTable& table, const Column& column, double factor, bool
                    ", too slow for the motion of any vehicle; " + remedy);
 }
 
-/// Refuses what counts from 1970 where the map names a finer unit than it counts in: its rows would lie too close.
-void check_epoch(const CsvTable& table, const Column& column, double factor, double first, double median_step) {
-  if (factor >= 1.0 || median_step <= 0.0 || median_step >= kFastestStep) return;
+/// The unit in which a column counts from 1970 whose map names a finer one; null: none. `first`: s, by the map's.
+const char* counts_from_1970_in(double factor, double first) {
   for (const auto& [unit, coarser] : kUnits) {
-    const double times = coarser / factor;
-    if (times < 2.0 || !is_since_1970(times * first) || times * median_step > kSlowestMotion) continue;
-    throw InputError(complaint_of(table, column) + std::to_string(std::lround(1e6 * median_step)) +
-                     " us by its unit, faster than any recorder writes; it counts from 1970 in " + unit + ". " +
-                     written(column, unit));
+    if (coarser > 2.0 * factor && is_since_1970(coarser / factor * first)) return unit;
   }
+  return nullptr;
+}
+
+/// Refuses what counts from 1970 in a coarser unit than the map names: its rows would lie too close.
+/// `unit`: that one.
+void check_epoch(const CsvTable& table, const Column& column, const char* unit, double median_step) {
+  if (unit == nullptr || median_step <= 0.0 || median_step >= kFastestStep) return;
+  throw InputError(complaint_of(table, column) + std::to_string(std::lround(1e6 * median_step)) +
+                   " us by its unit, faster than any recorder writes; it counts from 1970 in " + unit + ". " +
+                   written(column, unit));
 }
 
 /// Notes the longest gap; the median step, in s.
@@ -267,11 +272,15 @@ Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnMap& map, s
     rows.index.push_back(row);
     rows.utime.push_back(utime);
   }
+  const char* unit =
+      rows.utime.empty() ? nullptr : counts_from_1970_in(time.factor(), seconds_between(0, rows.utime.front()));
   if (falling > 0 && 2 * falling >= table.rows()) {
+    const std::string remedy =
+        unit != nullptr ? std::string{"it counts from 1970 in "} + unit + ". " + written(time.first(), unit)
+                        : "is it the time column, and is its unit right? Seconds and nanoseconds in two columns: "
+                          "time: {columns: [SECONDS, NANOSECONDS], units: [s, ns]} in the map";
     throw InputError(table.where(first_falling) + ": time does not rise here nor in " + std::to_string(falling - 1) +
-                     " more of " + std::to_string(table.rows()) +
-                     " rows; is it the time column, and is its unit right? Seconds and nanoseconds in two columns: "
-                     "time: {columns: [SECONDS, NANOSECONDS], units: [s, ns]} in the map");
+                     " more of " + std::to_string(table.rows()) + " rows; " + remedy);
   }
   if (missing > 0) notes.push_back("time: " + std::to_string(missing) + " rows dropped (empty or NaN)");
   if (falling > 0) {
@@ -281,8 +290,7 @@ Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnMap& map, s
   const double typical = report_longest_gap(rows.utime, notes);
   if (time.first().name == kOwnTime) return rows;  // a topic's own time is known to be one
   check_step(table, time.first(), time.factor(), time.dated(), typical);
-  if (!rows.utime.empty())
-    check_epoch(table, time.first(), time.factor(), seconds_between(0, rows.utime.front()), typical);
+  check_epoch(table, time.first(), unit, typical);
   compare_clocks(table, time, rows, notes);
   return rows;
 }

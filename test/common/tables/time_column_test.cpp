@@ -81,6 +81,12 @@ TEST_CASE("time: seconds since 1970 that the map calls milliseconds are refused,
   const std::string told = complaint(dated, "{column: t, unit: ms}");
   CHECK(told.find("the median step between rows is 40 us by its unit") != std::string::npos);
   CHECK(told.ends_with("it counts from 1970 in s. Say so in the map: time: {column: t, unit: s}"));
+  // Where they come to lie so close that none of them rises.
+  for (const char* unit : {"us", "ns"}) {
+    const std::string close = complaint(dated, std::string{"{column: t, unit: "} + unit + "}");
+    CHECK(close.find("time does not rise") != std::string::npos);
+    CHECK(close.ends_with("it counts from 1970 in s. Say so in the map: time: {column: t, unit: s}"));
+  }
   // Milliseconds of a computer that was on for twenty days are what they are said to be.
   CHECK(complaint("t,z\n1748338850,1\n1748338890,2\n1748338930,3\n1748338970,4\n", "{column: t, unit: ms}") ==
         "no complaint");
