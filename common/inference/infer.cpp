@@ -171,7 +171,10 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
       found.free_force->size.share >= thresholds.smallest_size) {
     std::string of;
     for (const GroupFound& group : found.free_force->groups) of += (of.empty() ? "" : "; ") + words(group);
-    reasons.push_back({Cause::kFreeForce, found.free_force->log_odds, thresholds.free_force_odds, of});
+    // Where there was no time to fit it, a first look promises it, and promises of much are no numbers.
+    const double odds =
+        found.free_force->fit.finite ? found.free_force->log_odds : std::numeric_limits<double>::quiet_NaN();
+    reasons.push_back({Cause::kFreeForce, odds, thresholds.free_force_odds, of});
     unexplained = true;
   }
   for (const RandomForce& force : conclusion.random) {

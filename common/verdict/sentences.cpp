@@ -82,8 +82,9 @@ std::string unexplained(const Conclusion& conclusion) {
     sentence += text("Something acts that no listed effect explains: %s of the applied force in %s",
                      percent(conclusion.found.free_force->size.share).c_str(),
                      model::kAxisNames[static_cast<std::size_t>(conclusion.found.free_force->size.axis)]) +
-                text(", log odds %.0f. It goes with ", free->value) + free->of +
-                ". These are its arguments, not its cause. ";
+                (std::isfinite(free->value) ? text(", log odds %.0f", free->value)
+                                            : std::string{", by a first look that there was no time to confirm"}) +
+                ". It goes with " + free->of + ". These are its arguments, not its cause. ";
   }
   if (const Reason* slow = reason(conclusion, Cause::kSlowRandomForce)) {
     sentence += text("A force in %s remembers itself for %.0f s: that is no noise, and nothing recorded goes with it. ",

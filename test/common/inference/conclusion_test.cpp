@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/inference/infer.hpp"
 #include "test/common/likelihood/noisy_dive.hpp"
@@ -147,6 +148,22 @@ TEST_CASE("conclusion: as many names as the search allows are no claim, nor a fe
   nothing.conclusion.found.rival = {"cross_coupling"};
   nothing.conclusion.reasons.clear();
   CHECK(nothing.concluded().verdict == Verdict::ambiguous);
+}
+
+TEST_CASE("conclusion: a free force that there was no time to fit is a cause, and what it promises no number") {
+  Nothing nothing;
+  auto& force = nothing.conclusion.found.free_force.emplace();
+  force.log_odds = 2e6;
+  force.size.share = 0.02;
+  const Conclusion promised = nothing.concluded();
+  CHECK(promised.verdict == Verdict::unexplained);
+  REQUIRE(promised.reasons.size() == 1);
+  CHECK(promised.reasons.front().cause == Cause::kFreeForce);
+  CHECK(std::isnan(promised.reasons.front().value));
+  force.log_odds = 20.0;
+  force.fit.finite = true;
+  nothing.conclusion.reasons.clear();
+  CHECK(nothing.concluded().reasons.front().value == 20.0);
 }
 
 TEST_CASE("conclusion: a name of little evidence is no claim, however far behind the others are") {

@@ -52,3 +52,16 @@ TEST_CASE("sentences: where one of several names is doubtful, those that are sur
   CHECK(verdict::paragraph(conclusion)
             .starts_with("Something is missing, and the evidence for a name is weak. Likeliest: current: 20 %"));
 }
+
+TEST_CASE("sentences: a free force that was not fitted has no odds") {
+  inference::Conclusion conclusion;
+  conclusion.verdict = inference::Verdict::unexplained;
+  conclusion.found.free_force.emplace().size = {.share = 0.02, .axis = 0};
+  conclusion.reasons = {{inference::Cause::kFreeForce, std::numeric_limits<double>::quiet_NaN(), 5.0, "depth in X"}};
+  CHECK(verdict::paragraph(conclusion)
+            .starts_with(
+                "Something acts that no listed effect explains: 2.0 % of the applied force in X, by a first look "
+                "that there was no time to confirm. It goes with depth in X. "));
+  conclusion.reasons.front().value = 41.0;
+  CHECK(verdict::paragraph(conclusion).find("in X, log odds 41. It goes with depth in X. ") != std::string::npos);
+}
