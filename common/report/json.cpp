@@ -57,6 +57,7 @@ Json whiteness(const std::vector<AxisWhiteness>& axes) {
   for (const auto& axis : axes) {
     object[axis.axis] = {{"p_value", number_or_null(axis.p_value)},
                          {"autocorrelation_time_s", number_or_null(axis.autocorrelation_time_s)},
+                         {"swing_period_s", number_or_null(axis.swing_period_s)},
                          {"explained", number_or_null(axis.explained)}};
   }
   return object;

@@ -73,6 +73,7 @@ std::vector<AxisWhiteness> whiteness(const Json& object) {
     axes.push_back({.axis = axis,
                     .p_value = real(w, "p_value"),
                     .autocorrelation_time_s = real(w, "autocorrelation_time_s"),
+                    .swing_period_s = real(w, "swing_period_s"),
                     .explained = real(w, "explained")});
   }
   return axes;

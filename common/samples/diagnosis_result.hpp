@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -56,6 +57,7 @@ struct AxisWhiteness {
   std::string axis;  ///< "X" .. "N"
   double p_value{};  ///< of the whiteness test (Ljung-Box on residuals that share no measurement)
   double autocorrelation_time_s{};
+  double swing_period_s{std::numeric_limits<double>::quiet_NaN()};  ///< of a residual that swings; NaN: it does not
   double explained{};    ///< share of variance explained, of the applied wrench's axis; NaN where none is applied
   double applied_rms{};  ///< N or N m, of that wrench about its mean
   double noise{};  ///< what the sensors' white noise alone leaves of a residual, over the applied wrench's variance

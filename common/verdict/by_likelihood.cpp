@@ -175,6 +175,7 @@ class Diagnosing {
     answer_.verdict = conclusion_.verdict;
     result().verdict = word(conclusion_.verdict);
     result().paragraph = paragraph(conclusion_);
+    if (conclusion_.verdict == Verdict::unexplained) result().paragraph += what_swings(result().residual_after);
     for (const inference::Reason& reason : conclusion_.reasons)
       answer_.given.causes.push_back({std::string(word(reason.cause)), reason.value, reason.threshold, reason.of});
   }

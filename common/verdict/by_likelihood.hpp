@@ -45,4 +45,7 @@ struct Answer {
 /// The verdict in plain words.
 [[nodiscard]] std::string paragraph(const inference::Conclusion& conclusion);
 
+/// What of that swings, in a sentence and a space before it, or nothing.
+[[nodiscard]] std::string what_swings(std::span<const AxisWhiteness> left);
+
 }  // namespace fathom::verdict

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "common/residual/force_residual.hpp"
@@ -105,4 +106,35 @@ TEST_CASE("whiteness: an AR(1) residual has the memory that theory gives") {
   CHECK(rows[0].p_value < 1e-6);
   // Integral of phi^|lag|, trapezoidal from lag 0: dt (1/2 + phi / (1 - phi)).
   CHECK(rows[0].autocorrelation_time_s == doctest::Approx(0.1 * (0.5 + kPhi / (1.0 - kPhi))).epsilon(0.2));
+}
+
+TEST_CASE("whiteness: what swings over a band of frequencies has a period, a random force that forgets has none") {
+  constexpr double kStep = 0.5, kPeriod = 5.0;  // s
+  constexpr std::size_t kCount = 330, kLags = 60;
+  constexpr int kRuns = 300;
+  std::mt19937 random{6};
+  std::normal_distribution<double> normal;
+  int found = 0, false_alarms = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    // Sixty tones about the middle one, a fifth of it wide, and as much noise as signal over ten.
+    std::vector<double> swings(kCount, 0.0);
+    for (int tone = 0; tone < 60; ++tone) {
+      const double omega = 2.0 * std::numbers::pi / kPeriod * (1.0 + 0.1 * normal(random));
+      const double cosine = normal(random), sine = normal(random);
+      for (std::size_t k = 0; k < kCount; ++k) {
+        const double phase = omega * kStep * static_cast<double>(k);
+        swings[k] += cosine * std::cos(phase) + sine * std::sin(phase);
+      }
+    }
+    for (double& value : swings) value += 2.4 * normal(random);
+    const double period = swing_period(autocorrelation(swings, kLags), kStep, kCount);
+    found += std::abs(period - kPeriod) < 0.1 * kPeriod ? 1 : 0;
+    for (const double phi : {0.0, 0.6, 0.9}) {
+      const auto forgets = autoregression(phi, kCount, random);
+      false_alarms += std::isfinite(swing_period(autocorrelation(forgets, kLags), kStep, kCount)) ? 1 : 0;
+    }
+  }
+  MESSAGE("found ", found, " of ", kRuns, ", false ", false_alarms, " of ", 3 * kRuns);
+  CHECK(found > kRuns * 9 / 10);
+  CHECK(false_alarms < 3 * kRuns / 50);
 }
