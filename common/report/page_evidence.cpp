@@ -204,8 +204,7 @@ std::string certainty_section(const DiagnosisResult& result) {
   for (const auto& axis : result.residual_after) {
     if (!(axis.p_value < kNotRandom) || axis.autocorrelation_time_s < kNoMemory) continue;
     const auto named = std::ranges::find_if(kAxes, [&](const Axis& a) { return axis.axis == a.force; });
-    open += "<li>What is left in <b>" + escape(named == kAxes.end() ? axis.axis : std::string(named->name)) +
-            "</b> " +
+    open += "<li>What is left in <b>" + escape(named == kAxes.end() ? axis.axis : std::string(named->name)) + "</b> " +
             (std::isfinite(axis.swing_period_s)
                  ? "swings, every " + escape(number(axis.swing_period_s, 2)) +
                        " s or so: waves of many frequencies do that, a tether or a load that hangs, and what is "

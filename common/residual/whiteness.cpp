@@ -78,8 +78,8 @@ double ljung_box_p(std::span<const double> rho, double count) {
 }
 
 double swing_period(std::span<const double> rho, double step, double count) {
-  constexpr double kLeast = 0.2;   // of the variance: less is of no use as a hint
-  constexpr double kBeyond = 3.0;  // standard errors
+  constexpr double kLeast = 0.2;                    // of the variance: less is of no use as a hint
+  constexpr double kBeyond = 3.0;                   // standard errors
   constexpr double kEarliest = 1.5, kLatest = 3.0;  // of the crest over the trough: a band of frequencies blurs twice
   double squares = 0.5;
   std::size_t trough = 0, crest = 0;

@@ -88,7 +88,8 @@ TrialRecording record_trial(const model::Vehicle& vehicle, const estimation::Kal
     if (due(m.t, kAttitudeEvery)) {
       Eigen::Vector3d euler = euler_from_rotation(m.q_WB.toRotationMatrix());
       euler.head<2>() += settings.inclinometer * dice.vector().head<2>();
-      euler.z() += instruments.heading_noise * dice.normal() - instruments.declination;
+      euler.z() += instruments.heading_noise.value_or(estimation::KalmanSettings::kHeadingNoise) * dice.normal() -
+                   instruments.declination;
       ahrs.q_WB = Eigen::Quaterniond{rotation_from_euler(euler)};
       ahrs.has_attitude = true;
     }

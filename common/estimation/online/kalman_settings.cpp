@@ -50,7 +50,7 @@ void read_attitude(const Config& config, KalmanSettings& s) {
   }
   read(config, "noise", "rad", s.attitude_noise);
   if (config.has("memory")) s.attitude_memory = config.not_negative("memory", "s");
-  read(config, "heading_noise", "rad", s.heading_noise);
+  if (config.has("heading_noise")) s.heading_noise = config.positive("heading_noise", "rad");
   if (config.has("declination")) s.declination = config.quantity("declination", "rad");
 }
 

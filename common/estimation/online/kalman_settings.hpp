@@ -53,12 +53,13 @@ struct KalmanSettings {
   double gyro_bias{0.005};                                               ///< rad/s, prior
 
   AttitudeUse attitude{AttitudeUse::kEverything};
-  double attitude_noise{0.01};  ///< rad
+  static constexpr double kHeadingNoise = 0.02;  ///< rad
+  double attitude_noise{0.01};                   ///< rad
   /// s for which an attitude's error goes on: the instrument filters, and what its filter leaves wanders. Samples
   /// within are no new witnesses. 0: each errs anew.
   double attitude_memory{};
-  double heading_noise{0.02};  ///< rad
-  double declination{};        ///< rad, of a magnetic heading
+  std::optional<double> heading_noise;  ///< rad; else kHeadingNoise alone, and with the tilt as attitude_noise
+  double declination{};                 ///< rad, of a magnetic heading
 
   Eigen::Vector3d p_BP{Eigen::Vector3d::Zero()};  ///< m, pressure port; zero where the driver has removed it
   double depth_noise{0.02};                       ///< m

@@ -159,13 +159,18 @@ void KinematicEstimator<N>::use(const Ahrs& sample) {
   if (!sample.has_attitude) return;
   if (s.attitude == AttitudeUse::kHeading) {
     const double heading = euler_from_rotation(sample.q_WB.toRotationMatrix()).z();
-    apply(kHeading, observe_heading(point, s.declination, heading, square(s.heading_noise)));
+    apply(kHeading, observe_heading(point, s.declination, heading,
+                                    square(s.heading_noise.value_or(KalmanSettings::kHeadingNoise))));
   } else if (s.attitude == AttitudeUse::kEverything) {
     // Errors that go on for `memory` have this density at slow frequencies, where the gyro does not know better.
     const double apart = attitude_ ? seconds_between(*attitude_, sample.utime) : s.attitude_memory;
     const double repeats = apart > 0.0 ? std::max(1.0, 2.0 * s.attitude_memory / apart) : 1.0;
-    const double variance = square(s.attitude_noise) * (attitude_ ? repeats : 1.0);
-    for (const auto& row : observe_attitude(point, sample.q_WB, variance)) apply(kAttitude, row);
+    const double share = attitude_ ? repeats : 1.0;
+    const double tilt = square(s.attitude_noise) * share;
+    const double heading = square(s.heading_noise.value_or(s.attitude_noise)) * share;
+    const auto rows = heading == tilt ? observe_attitude(point, sample.q_WB, tilt)
+                                      : observe_attitude(point, sample.q_WB, Eigen::Vector3d(tilt, tilt, heading));
+    for (const auto& row : rows) apply(kAttitude, row);
     attitude_ = sample.utime;
   }
 }

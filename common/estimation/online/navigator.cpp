@@ -178,8 +178,8 @@ void Navigator::say(const Node& node) {
   const double speed = std::max(systematic(Source::kOpticalFlow), systematic(Source::kDvl));
   state.covariance.diagonal() += (Vector6d{} << across, across, down, speed, speed, speed).finished();
   const Vector6d sigma = state.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  state.sigma << sigma.head<3>(), Eigen::Vector3d::Constant(settings_.attitude_noise), sigma.tail<3>(),
-      Eigen::Vector3d::Constant(settings_.rate_noise);
+  const Eigen::Vector3d turned = (R_WB.transpose().cwiseAbs2() * settings_.attitude_sigma().cwiseAbs2()).cwiseSqrt();
+  state.sigma << sigma.head<3>(), turned, sigma.tail<3>(), Eigen::Vector3d::Constant(settings_.rate_noise);
   for (std::size_t i = 0; i < kSources; ++i) {
     if (memory.tracks[i].last) state.age[i] = seconds_between(*memory.tracks[i].last, node.utime);
   }

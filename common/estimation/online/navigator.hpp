@@ -51,6 +51,9 @@ struct NavigatorSettings {
   double gate{6.0};             ///< standard deviations beyond which a measurement is refused
   double max_gap{0.25};         ///< s without attitude sample after which the motion in between is unknown
   double attitude_noise{};      ///< rad
+  /// rad by which roll and pitch, and the heading, wander for minutes, as their maker states: part of what is stated,
+  /// not of the gains.
+  double attitude_systematic{}, heading_systematic{};
   double rate_noise{};          ///< rad/s
   double acceleration_noise{};  ///< m/s in one second, across: accelerometer and what the attitude turns of gravity
   double vertical_acceleration_noise{};  ///< m/s in one second, level: the accelerometer alone; zero: as across
@@ -63,6 +66,11 @@ struct NavigatorSettings {
 
   /// Keys as above, with units; one section for each aid that is used.
   [[nodiscard]] static NavigatorSettings from(const Config& config);
+  /// rad, about north, east and down: all that an attitude is off by.
+  [[nodiscard]] Eigen::Vector3d attitude_sigma() const {
+    const double tilt = std::hypot(attitude_noise, attitude_systematic);
+    return {tilt, tilt, std::hypot(attitude_noise, heading_systematic)};
+  }
 };
 
 /// Where things are: on the vehicle and at the site.

@@ -36,6 +36,9 @@ NavigatorSettings NavigatorSettings::from(const Config& config) {
   s.gate = config.positive("gate", "");
   s.max_gap = config.positive("max_gap", "s");
   s.attitude_noise = config.positive("attitude_noise", "rad");
+  if (config.has("attitude_systematic")) s.attitude_systematic = config.not_negative("attitude_systematic", "rad");
+  s.heading_systematic =
+      config.has("heading_systematic") ? config.not_negative("heading_systematic", "rad") : s.attitude_systematic;
   s.rate_noise = config.positive("rate_noise", "rad/s");
   s.acceleration_noise = config.positive("acceleration_noise", "m/s");
   s.vertical_acceleration_noise = config.has("vertical_acceleration_noise")

@@ -228,7 +228,9 @@ KalmanSettings noise_from_rest(const Recording& recording, KalmanSettings settin
       if (!one.has_attitude) return std::nullopt;
       return rotation_vector_from_quaternion(first->q_WB.conjugate() * one.q_WB).z();
     };
-    set(settings.heading_noise, spread(recording.ahrs, *rest, heading));
+    double of_heading = settings.heading_noise.value_or(0.0);
+    set(of_heading, spread(recording.ahrs, *rest, heading));
+    if (of_heading > 0.0) settings.heading_noise = of_heading;
     set(settings.attitude_noise, spread(recording.ahrs, *rest, heading));
   }
   set(settings.depth_noise, spread(recording.depth, *rest, [](const Depth& one) { return std::optional{one.z}; }));
@@ -251,7 +253,7 @@ KalmanSettings noise_from_rest(const Recording& recording, KalmanSettings settin
       ": noises from %.1f s of rest: accelerometer %.3g m/s^2, gyro %.3g rad/s, heading %.3g rad, depth %.3g m, "
       "range %.3g m",
       seconds_between(rest->from, rest->to), settings.accelerometer_noise.mean(), settings.gyro_noise.mean(),
-      settings.heading_noise, settings.depth_noise, settings.range_noise);
+      settings.heading_noise.value_or(settings.attitude_noise), settings.depth_noise, settings.range_noise);
   notes.push_back(recording.name + text);
   return settings;
 }

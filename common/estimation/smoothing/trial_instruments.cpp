@@ -79,7 +79,9 @@ void measure_white_noises(const std::vector<Ahrs>& stream, KalmanSettings& s) {
 // The live filter's section: its cut-offs are of no use here; its noises, and what it says lasts, are.
 void add_live(const NavigatorSettings& live, const std::vector<Ahrs>& stream, KalmanSettings& s, std::string& note) {
   s.gate = live.gate;
-  s.attitude_noise = live.attitude_noise;
+  const Eigen::Vector3d attitude_sigma = live.attitude_sigma();
+  s.attitude_noise = attitude_sigma.x();
+  s.heading_noise = attitude_sigma.z();
   s.attitude_memory = kAttitudeMemory;
   s.accelerometer_bias = live.bias_prior;
   s.tag_attitude = false;
@@ -105,15 +107,17 @@ void add_live(const NavigatorSettings& live, const std::vector<Ahrs>& stream, Ka
   s.lasting_attitude.setConstant(live.attitude_noise);
   if (const auto package = turned_package(stream)) {
     const double t = seconds_between(stream.front().utime, stream.back().utime);
-    const double wandered = live.attitude_noise * std::sqrt(std::min(1.0, 2.0 * kWander / t));
-    const double doubt = std::hypot(package->sigma, wandered);
-    const double share = kTurned * kTurned / (kTurned * kTurned + doubt * doubt);  // of what is seen, by the prior
-    s.R_BI = quaternion_from_rotation_vector(share * package->turn).toRotationMatrix();
-    s.lasting_attitude.setConstant(std::sqrt(share) * doubt);
-    const Eigen::Vector3d mrad = 1e3 * share * package->turn;
+    const Eigen::Vector3d wandered = attitude_sigma * std::sqrt(std::min(1.0, 2.0 * kWander / t));
+    const Eigen::Vector3d doubt2 = wandered.cwiseAbs2().array() + package->sigma * package->sigma;
+    const Eigen::Vector3d share =  // of what is seen, by the prior
+        kTurned * kTurned * (doubt2.array() + kTurned * kTurned).inverse();
+    s.R_BI = quaternion_from_rotation_vector(share.cwiseProduct(package->turn)).toRotationMatrix();
+    s.lasting_attitude = share.cwiseProduct(doubt2).cwiseSqrt();
+    const Eigen::Vector3d mrad = 1e3 * share.cwiseProduct(package->turn), left = 1e3 * s.lasting_attitude;
     note = text(
-        "gyros and accelerometers stand turned against the told attitude by %.1f %.1f %.1f mrad (+- %.1f): taken out",
-        mrad.x(), mrad.y(), mrad.z(), 1e3 * std::sqrt(share) * doubt);
+        "gyros and accelerometers stand turned against the told attitude by %.1f %.1f %.1f mrad (+- %.1f %.1f %.1f): "
+        "taken out",
+        mrad.x(), mrad.y(), mrad.z(), left.x(), left.y(), left.z());
   }
   s.lasting_velocity.setConstant(std::max(live.flow.systematic, live.dvl.systematic));
   measure_white_noises(stream, s);

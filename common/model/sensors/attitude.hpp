@@ -12,4 +12,10 @@ namespace fathom::model {
 [[nodiscard]] std::array<Observation, 3> observe_attitude(const KinematicPoint& point,
                                                           const Eigen::Quaterniond& measured, double variance);
 
+/// Rotation in W [rad], the innovation likewise, with `variance` about north, east and down: the heading has an
+/// instrument of its own.
+[[nodiscard]] std::array<Observation, 3> observe_attitude(const KinematicPoint& point,
+                                                          const Eigen::Quaterniond& measured,
+                                                          const Eigen::Vector3d& variance);
+
 }  // namespace fathom::model

@@ -48,7 +48,8 @@ TEST_CASE("result.json holds exactly the promised names") {
   CHECK(keys(file["error"]["improvement"]) == Names{"ci95", "value"});
   CHECK(keys(file["parameters"]) == Names{"after", "before"});
   CHECK(keys(file["residual"]) == Names{"after", "before"});
-  CHECK(keys(file["residual"]["after"]["X"]) == Names{"autocorrelation_time_s", "explained", "p_value", "swing_period_s"});
+  CHECK(keys(file["residual"]["after"]["X"]) ==
+        Names{"autocorrelation_time_s", "explained", "p_value", "swing_period_s"});
 }
 
 TEST_CASE("What was not measured stands with the effects that could not be asked for it") {

@@ -79,6 +79,23 @@ TEST_CASE("navigator: lateness within what is stated, and the order of arrival, 
   }
 }
 
+TEST_CASE("navigator: what an attitude wanders by is stated, and moves nothing else") {
+  NavigatorSettings settings = test::survey_settings(true);
+  const auto plain = run({.shallow = true}, settings);
+  settings.attitude_systematic = 0.004;
+  settings.heading_systematic = 0.009;
+  const auto stated = run({.shallow = true}, settings);
+  REQUIRE(stated.size() == plain.size());
+  for (std::size_t k = 0; k < stated.size(); k += 100) {
+    CHECK(stated[k].nu == plain[k].nu);
+    CHECK(stated[k].covariance == plain[k].covariance);
+    // The axes of the body see the world's a little turned: the sum of squares is the same.
+    const double all = 2.0 * (0.002 * 0.002 + 0.004 * 0.004) + 0.002 * 0.002 + 0.009 * 0.009;
+    CHECK(stated[k].sigma.segment<3>(3).squaredNorm() == doctest::Approx(all));
+    CHECK(stated[k].sigma[5] > 1.5 * stated[k].sigma[3]);
+  }
+}
+
 TEST_CASE("navigator: a measurement later than stated is used at its own time and counted") {
   Navigator navigator{test::survey_settings(false), test::survey_places()};
   const auto states =

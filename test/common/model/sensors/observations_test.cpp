@@ -171,6 +171,9 @@ TEST_CASE("observations: every row is the derivative of what is predicted") {
     });
     check_row(
         "attitude", [&](const auto& p) { return observe_attitude(p, near, 1.0)[i]; }, kSmallTurn);
+    check_row(
+        "attitude by heading and tilt",
+        [&](const auto& p) { return observe_attitude(p, near, Eigen::Vector3d(1.0, 1.0, 4.0))[i]; }, kSmallTurn);
     check_row("tag", [&](const auto& p) { return observe_tag(p, X_WT, X_BC, X_CT, 1.0, 1.0, 1.0)[i]; });
   }
   const Pose down{arm, quaternion_from_rotation_vector({0.1, -0.2, 1.4})};
