@@ -19,13 +19,13 @@ namespace {
 
 namespace at = model::at;
 
-/// Position, velocity in W and angles of the truth, as the filter counts them.
-Eigen::Matrix<double, 9, 1> error_of(const Eigen::VectorXd& x, const model::FlightMoment& m) {
+/// Of position, velocity in W and attitude, a turn in B.
+Eigen::Matrix<double, 9, 1> error_of(const Eigen::VectorXd& x, const Eigen::Matrix3d& R_WB,
+                                     const model::FlightMoment& m) {
   Eigen::Matrix<double, 9, 1> e;
   e.head<3>() = x.segment<3>(at::kPosition) - m.p_WB;
   e.segment<3>(3) = x.segment<3>(at::kVelocity) - m.q_WB * m.nu.head<3>();
-  const Eigen::Vector3d euler = euler_from_rotation(m.q_WB.toRotationMatrix());
-  for (int i = 0; i < 3; ++i) e[6 + i] = wrap_angle(x[at::kEuler + i] - euler[i]);
+  e.tail<3>() = rotation_vector_from_quaternion(m.q_WB.conjugate() * Eigen::Quaterniond{R_WB});
   return e;
 }
 
@@ -41,14 +41,15 @@ Errors errors_of(const Setup& s, const test::TrialSettings& settings) {
   Errors result;
   double samples = 0.0, early = 0.0, late = 0.0;
   std::size_t back = trial.flight.size();
-  const auto smoothed = estimation::smooth(trial.recording, s.instruments,
-                                           [&](Utime, const Eigen::VectorXd& x, const Eigen::MatrixXd& P) {
-                                             --back;
-                                             if (back % 50 != 0) return;
-                                             const Eigen::Matrix<double, 9, 1> e = error_of(x, trial.flight[back]);
-                                             result.nees += e.dot(P.topLeftCorner<9, 9>().ldlt().solve(e)) / 9.0;
-                                             samples += 1.0;
-                                           });
+  const auto smoothed =
+      estimation::smooth(trial.recording, s.instruments,
+                         [&](Utime, const Eigen::VectorXd& x, const Eigen::Matrix3d& R_WB, const Eigen::MatrixXd& P) {
+                           --back;
+                           if (back % 50 != 0) return;
+                           const Eigen::Matrix<double, 9, 1> e = error_of(x, R_WB, trial.flight[back]);
+                           result.nees += e.dot(P.topLeftCorner<9, 9>().ldlt().solve(e)) / 9.0;
+                           samples += 1.0;
+                         });
   result.nees /= samples;
   double nis = 0.0, used = 0.0;
   for (const auto& one : smoothed.statistics) {

@@ -110,7 +110,7 @@ void KalmanEstimator::say(Utime utime) {
         x.head<N>() = estimator.filter().state();
         variance.head<N>() = estimator.filter().covariance().diagonal();
         StateEstimate state = state_of(utime, x, variance, estimator.filter().reference());
-        state.valid = estimator.upright() && fixed_ && seconds_between(*fixed_, utime) <= settings_.max_gap &&
+        state.valid = estimator.oriented() && fixed_ && seconds_between(*fixed_, utime) <= settings_.max_gap &&
                       x.allFinite() && variance.allFinite();
         if (state.p_WB.allFinite() && state.nu.allFinite()) output_.push_back(state);
       },

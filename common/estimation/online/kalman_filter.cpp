@@ -7,7 +7,7 @@ namespace {
 
 namespace at = model::at;
 
-constexpr double kSteep = 1.0;  // rad of pitch beyond which the angles are counted anew
+constexpr double kLost = 1.0;  // rad that updates of one instant may turn an attitude by, far beyond what is linear
 constexpr double kPreciseBeyond =
     1e8;  // variance before over noise: from here on the plain update loses too many digits
 
@@ -35,14 +35,23 @@ void mirror(Eigen::Matrix<double, N, N>& P) {
 
 }  // namespace
 
-Transition::Transition(const model::KinematicPoint& from, double step, KinematicModel model)
-    : dt{step}, coupled{model == KinematicModel::kCoupled}, R_WB{from.R_WB}, euler_rates{from.euler_from_rates} {
-  by_euler = from.turned_out(from.group(at::kAcceleration));
-  const Eigen::Vector3d turn = dt * from.group(at::kRates) + 0.5 * dt * dt * from.group(at::kRateSlopes);
-  const double sr = from.sin_roll, cr = from.cos_roll, cp = from.cos_pitch, tp = from.sin_pitch / cp;
+Transition::Transition(const model::KinematicPoint& from, double step, KinematicModel model, bool on_rotations)
+    : dt{step},
+      coupled{model == KinematicModel::kCoupled},
+      R_WB{from.R_WB},
+      turn{dt * from.group(at::kRates) + 0.5 * dt * dt * from.group(at::kRateSlopes)},
+      by_angles{from.turned_out(from.group(at::kAcceleration))} {
+  if (on_rotations) {  // exp(d) exp(turn + e) = exp(turn) exp(exp(turn)' d + J e)
+    angles_angles = quaternion_from_rotation_vector(turn).toRotationMatrix().transpose();
+    angles_turn = right_jacobian(turn);
+    return;
+  }
+  angles_turn = from.angles_from_turn;
+  const Eigen::Vector3d euler = from.group(at::kAngles);
+  const double sr = std::sin(euler.x()), cr = std::cos(euler.x()), cp = std::cos(euler.y()), tp = std::tan(euler.y());
   const double across = sr * turn.y() + cr * turn.z(), along = cr * turn.y() - sr * turn.z();
-  euler_euler << 1.0 + along * tp, across / (cp * cp), 0.0,  //
-      -across, 1.0, 0.0,                                     //
+  angles_angles << 1.0 + along * tp, across / (cp * cp), 0.0,  //
+      -across, 1.0, 0.0,                                       //
       along / cp, across * tp / cp, 1.0;
 }
 
@@ -51,7 +60,7 @@ void transport(const Transition& F, Eigen::Matrix<double, N, N>& P) {
   const double dt = F.dt;
   auto position = P.template middleCols<3>(at::kPosition);
   auto velocity = P.template middleCols<3>(at::kVelocity);
-  auto euler = P.template middleCols<3>(at::kEuler);
+  auto angles = P.template middleCols<3>(at::kAngles);
   auto acceleration = P.template middleCols<3>(at::kAcceleration);
   auto rates = P.template middleCols<3>(at::kRates);
   auto slopes = P.template middleCols<3>(at::kRateSlopes);
@@ -59,13 +68,13 @@ void transport(const Transition& F, Eigen::Matrix<double, N, N>& P) {
   position += dt * velocity;
   if (F.coupled) {
     part.noalias() = acceleration * F.R_WB.transpose();
-    part.noalias() += euler * F.by_euler.transpose();
+    part.noalias() += angles * F.by_angles.transpose();
     position += (0.5 * dt * dt) * part;
     velocity += dt * part;
   }
-  part.noalias() = euler * F.euler_euler.transpose();
-  part.noalias() += (dt * rates + (0.5 * dt * dt) * slopes) * F.euler_rates.transpose();
-  euler = part;
+  part.noalias() = angles * F.angles_angles.transpose();
+  part.noalias() += (dt * rates + (0.5 * dt * dt) * slopes) * F.angles_turn.transpose();
+  angles = part;
   rates += dt * slopes;
 }
 
@@ -74,19 +83,19 @@ void transport_back(const Transition& F, Eigen::Matrix<double, N, N>& L) {
   const double dt = F.dt;
   auto position = L.template middleCols<3>(at::kPosition);
   auto velocity = L.template middleCols<3>(at::kVelocity);
-  auto euler = L.template middleCols<3>(at::kEuler);
+  auto angles = L.template middleCols<3>(at::kAngles);
   auto acceleration = L.template middleCols<3>(at::kAcceleration);
   auto rates = L.template middleCols<3>(at::kRates);
   auto slopes = L.template middleCols<3>(at::kRateSlopes);
   Eigen::Matrix<double, N, 3> part;
-  part.noalias() = euler * F.euler_rates;
+  part.noalias() = angles * F.angles_turn;
   slopes += dt * rates + (0.5 * dt * dt) * part;
   rates += dt * part;
-  part.noalias() = euler * F.euler_euler;
-  euler = part;
+  part.noalias() = angles * F.angles_angles;
+  angles = part;
   if (F.coupled) {
     part = (0.5 * dt * dt) * position + dt * velocity;
-    euler.noalias() += part * F.by_euler;
+    angles.noalias() += part * F.by_angles;
     acceleration.noalias() += part * F.R_WB;
   }
   velocity += dt * position;
@@ -96,14 +105,14 @@ template <int N>
 void transport_back(const Transition& F, Eigen::Matrix<double, N, 1>& l) {
   const double dt = F.dt;
   auto group = [&l](int begin) { return l.template segment<3>(begin); };
-  const Eigen::Vector3d turned = F.euler_rates.transpose() * group(at::kEuler);
+  const Eigen::Vector3d turned = F.angles_turn.transpose() * group(at::kAngles);
   group(at::kRateSlopes) += dt * group(at::kRates) + (0.5 * dt * dt) * turned;
   group(at::kRates) += dt * turned;
-  const Eigen::Vector3d euler = F.euler_euler.transpose() * group(at::kEuler);
-  group(at::kEuler) = euler;
+  const Eigen::Vector3d angles = F.angles_angles.transpose() * group(at::kAngles);
+  group(at::kAngles) = angles;
   if (F.coupled) {
     const Eigen::Vector3d part = (0.5 * dt * dt) * group(at::kPosition) + dt * group(at::kVelocity);
-    group(at::kEuler) += F.by_euler.transpose() * part;
+    group(at::kAngles) += F.by_angles.transpose() * part;
     group(at::kAcceleration) += F.R_WB.transpose() * part;
   }
   const Eigen::Vector3d step = dt * group(at::kPosition);
@@ -114,9 +123,21 @@ template <int N>
 void KalmanFilter<N>::start(const State& x, const State& sigma) {
   x_ = x;
   P_ = sigma.cwiseAbs2().asDiagonal();
-  reference_.setIdentity();
+  reference_.reset();
   turned_.reset();
   transition_.reset();
+}
+
+template <int N>
+void KalmanFilter<N>::start(const State& x, const State& sigma, const Eigen::Matrix3d& R_WB) {
+  start(x, sigma);
+  reference_ = R_WB;
+}
+
+template <int N>
+bool KalmanFilter<N>::tells_attitude() const {
+  const Eigen::Vector3d angles = x_.template segment<3>(at::kAngles);
+  return reference_ ? angles.squaredNorm() < kLost * kLost : std::abs(angles.y()) < model::kSteepest;
 }
 
 template <int N>
@@ -127,20 +148,24 @@ model::KinematicPoint KalmanFilter<N>::point() const {
 }
 
 template <int N>
+void KalmanFilter<N>::fold() {
+  const Eigen::Vector3d angles = x_.template segment<3>(at::kAngles);
+  if (angles.isZero(0.0)) return;
+  turned_ = right_jacobian(angles);
+  reference_ = point().R_WB;
+  x_.template segment<3>(at::kAngles).setZero();
+  const Eigen::Matrix<double, N, 3> columns = P_.template middleCols<3>(at::kAngles) * turned_->transpose();
+  P_.template middleCols<3>(at::kAngles) = columns;
+  const Eigen::Matrix<double, 3, N> rows = *turned_ * P_.template middleRows<3>(at::kAngles);
+  P_.template middleRows<3>(at::kAngles) = rows;
+}
+
+template <int N>
 void KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, KinematicModel model) {
   turned_.reset();
-  if (std::abs(x_[at::kEuler + 1]) > kSteep) {
-    const model::KinematicPoint steep = point();
-    turned_ = steep.rates_from_euler;  // at zero angles their changes are turns in B
-    reference_ = steep.R_WB;
-    x_.template segment<3>(at::kEuler).setZero();
-    const Eigen::Matrix<double, N, 3> columns = P_.template middleCols<3>(at::kEuler) * turned_->transpose();
-    P_.template middleCols<3>(at::kEuler) = columns;
-    const Eigen::Matrix<double, 3, N> rows = *turned_ * P_.template middleRows<3>(at::kEuler);
-    P_.template middleRows<3>(at::kEuler) = rows;
-  }
+  if (reference_) fold();
   const model::KinematicPoint from = point();
-  const Transition F{from, dt, model};
+  const Transition F{from, dt, model, reference_.has_value()};
   const auto group = [this](int begin) { return x_.template segment<3>(begin); };
   group(at::kPosition) += dt * group(at::kVelocity);
   if (F.coupled) {
@@ -148,7 +173,11 @@ void KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, KinematicMod
     group(at::kPosition) += (0.5 * dt * dt) * a_W;
     group(at::kVelocity) += dt * a_W;
   }
-  group(at::kEuler) += F.euler_rates * (dt * group(at::kRates) + (0.5 * dt * dt) * group(at::kRateSlopes));
+  if (reference_) {
+    *reference_ = (*reference_ * F.angles_angles.transpose()).eval();
+  } else {
+    group(at::kAngles) += F.angles_turn * F.turn;
+  }
   group(at::kRates) += dt * group(at::kRateSlopes);
 
   transport<N>(F, P_);
@@ -157,7 +186,7 @@ void KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, KinematicMod
 
   const auto square = [](double value) { return value * value; };
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
-  static_assert(at::kPosition < at::kVelocity && at::kVelocity < at::kAcceleration && at::kEuler < at::kRates &&
+  static_assert(at::kPosition < at::kVelocity && at::kVelocity < at::kAcceleration && at::kAngles < at::kRates &&
                 at::kRates < at::kRateSlopes);  // the chains are added below the diagonal
   if (F.coupled) {
     add_chain<N>(P_, at::kPosition, at::kVelocity, at::kAcceleration, square(noise.jerk), dt, F.R_WB, F.R_WB);
@@ -168,7 +197,7 @@ void KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, KinematicMod
     P_.template block<3, 3>(at::kVelocity, at::kVelocity).diagonal().array() += q * dt;
     P_.template block<3, 3>(at::kAcceleration, at::kAcceleration).diagonal().array() += square(noise.jerk) * dt;
   }
-  add_chain<N>(P_, at::kEuler, at::kRates, at::kRateSlopes, square(noise.angular_jerk), dt, F.euler_rates, I);
+  add_chain<N>(P_, at::kAngles, at::kRates, at::kRateSlopes, square(noise.angular_jerk), dt, F.angles_turn, I);
   if constexpr (N > model::kKinematicStates) {
     P_.diagonal().template segment<3>(at::kBias).array() += square(noise.accelerometer_bias) * dt;
     P_.diagonal().template segment<3>(at::kBias + 3).array() += square(noise.gyro_bias) * dt;

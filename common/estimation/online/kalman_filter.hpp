@@ -1,6 +1,8 @@
 // Extended Kalman filter on the kinematic model of Pereira and Duncan (eqs. 6 to 11), as printed or with velocity and
-// position driven by the estimated acceleration. Fixed sizes, no allocation; the covariance's structure is used:
-// a step costs four products of 3 x 3 with 3 x N instead of two of N x N.
+// position driven by the estimated acceleration. The attitude is an error state on SO(3) (Sola 2017, ch. 5): a rotation
+// matrix and, in the state, the turn in B by which it is off; or the paper's roll, pitch and yaw. Fixed sizes, no
+// allocation; the covariance's structure is used: a step costs some products of 3 x 3 with 3 x N instead of two of
+// N x N.
 #pragma once
 
 #include <optional>
@@ -25,14 +27,16 @@ struct ProcessNoise {
 
 /// What a step does to small errors: the model's derivative at a point. Kept so that a smoother can go back.
 struct Transition {
-  Transition(const model::KinematicPoint& from, double dt, KinematicModel model);
+  /// `on_rotations`: the attitude is an error state, zero at `from` and after the step.
+  Transition(const model::KinematicPoint& from, double dt, KinematicModel model, bool on_rotations);
 
   double dt;
   bool coupled;
   Eigen::Matrix3d R_WB;
-  Eigen::Matrix3d by_euler;     ///< d(R_WB a)/d(euler)
-  Eigen::Matrix3d euler_rates;  ///< d(euler)/dt by rates
-  Eigen::Matrix3d euler_euler;  ///< d(new euler)/d(euler)
+  Eigen::Vector3d turn;           ///< rad, in B, over the step
+  Eigen::Matrix3d by_angles;      ///< d(R_WB a)/d(angles)
+  Eigen::Matrix3d angles_turn;    ///< d(new angles)/d(turn)
+  Eigen::Matrix3d angles_angles;  ///< d(new angles)/d(angles)
 };
 
 /// N is 18, 24 with the biases of accelerometers and gyros, or 27 with those of a velocity log as well.
@@ -52,9 +56,12 @@ class KalmanFilter {
     [[nodiscard]] double nis() const { return innovation * innovation / variance; }
   };
 
+  /// With roll, pitch and yaw in the state, good to kSteepest.
   void start(const State& x, const State& sigma);
-  /// Goes on by dt > 0. Where pitch has come near the vertical, the angles are first counted
-  /// from the present attitude: turned() then says how small changes of the old ones become changes of the new ones.
+  /// With an error state about R_WB; the angles of `x` are it.
+  void start(const State& x, const State& sigma, const Eigen::Matrix3d& R_WB);
+  /// Goes on by dt > 0. What updates have turned an error state by first goes into the rotation: turned() then says how
+  /// small changes of the old one become changes of the new one.
   void predict(double dt, const ProcessNoise& noise, KinematicModel model);
   /// Something unseen has moved the vehicle, or the estimate is lost: adds to the variances. Between instants only.
   void doubt(const State& sigma) { P_.diagonal() += sigma.cwiseAbs2(); }
@@ -65,17 +72,22 @@ class KalmanFilter {
   Outcome update(const model::Observation& observation, double gate, State& moved);
   /// What the last predict() did to the angles before it went on.
   [[nodiscard]] const std::optional<Eigen::Matrix3d>& turned() const { return turned_; }
-  [[nodiscard]] const Eigen::Matrix3d& reference() const { return reference_; }
+  /// The rotation about which the angles are an error state; none: they are roll, pitch and yaw.
+  [[nodiscard]] const std::optional<Eigen::Matrix3d>& reference() const { return reference_; }
+  /// False where the angles are beyond what they can tell: the attitude is lost.
+  [[nodiscard]] bool tells_attitude() const;
   /// Of the last predict().
   [[nodiscard]] const std::optional<Transition>& transition() const { return transition_; }
-  /// Yaw is not folded: it goes on counting turns, so that smoothing is a sum.
+  /// A yaw angle is not folded: it goes on counting turns, so that smoothing is a sum.
   [[nodiscard]] const State& state() const { return x_; }
   [[nodiscard]] const Covariance& covariance() const { return P_; }
 
  private:
+  void fold();
+
   State x_{State::Zero()};
   Covariance P_{Covariance::Identity()};
-  Eigen::Matrix3d reference_{Eigen::Matrix3d::Identity()};  // from which the angles are counted
+  std::optional<Eigen::Matrix3d> reference_;
   std::optional<Eigen::Matrix3d> turned_;
   std::optional<Transition> transition_;
 };

@@ -132,10 +132,10 @@ std::optional<KalmanStart> StartFinder::found() const {
   if (!position_ && !settings_->start && !unmeasured) return std::nullopt;
   KalmanStart start;
   if (attitude_) {
-    start.x.segment<3>(at::kEuler) = euler_from_rotation(attitude_->toRotationMatrix());
+    start.x.segment<3>(at::kAngles) = euler_from_rotation(attitude_->toRotationMatrix());
   } else {  // at rest the specific force points up: f_B = -g down_B
     const Eigen::Vector3d down = -*up_;
-    start.x.segment<3>(at::kEuler) << std::atan2(down.y(), down.z()), -std::asin(std::clamp(down.x(), -1.0, 1.0)),
+    start.x.segment<3>(at::kAngles) << std::atan2(down.y(), down.z()), -std::asin(std::clamp(down.x(), -1.0, 1.0)),
         *heading_;
   }
   start.x.segment<3>(at::kPosition) = settings_->start.value_or(position_.value_or(Eigen::Vector3d::Zero()));
@@ -145,7 +145,7 @@ std::optional<KalmanStart> StartFinder::found() const {
   start.sigma.segment<3>(at::kPosition).setConstant(fix ? s.start_position : 1e-3);
   if (!fix) start.sigma[at::kPosition + 2] = s.start_position;
   start.sigma.segment<3>(at::kVelocity).setConstant(s.start_velocity);
-  start.sigma.segment<3>(at::kEuler).setConstant(std::max(s.start_tilt, kSwimRoll));
+  start.sigma.segment<3>(at::kAngles).setConstant(std::max(s.start_tilt, kSwimRoll));
   start.sigma.segment<3>(at::kAcceleration).setConstant(s.start_acceleration);
   start.sigma.segment<3>(at::kRates).setConstant(s.start_rates);
   start.sigma.segment<3>(at::kRateSlopes).setConstant(s.start_acceleration);

@@ -44,7 +44,13 @@ KinematicEstimator<N>::KinematicEstimator(const KalmanSettings& settings) : sett
 
 template <int N>
 void KinematicEstimator<N>::start(Utime utime, const KalmanStart& start) {
-  filter_.start(start.x.head<N>(), start.sigma.head<N>());
+  if (settings_->model == KinematicModel::kPrinted) {
+    filter_.start(start.x.head<N>(), start.sigma.head<N>());
+  } else {
+    typename KalmanFilter<N>::State x = start.x.head<N>();
+    x.template segment<3>(at::kAngles).setZero();
+    filter_.start(x, start.sigma.head<N>(), rotation_from_euler(start.x.segment<3>(at::kAngles)));
+  }
   now_ = utime;
   started_ = true;
 }
@@ -53,6 +59,7 @@ template <int N>
 void KinematicEstimator<N>::advance(Utime utime, FilterRecord<N>* record) {
   record_ = record;
   open_ = false;
+  oriented_ = oriented_ && filter_.tells_attitude();
   double left = seconds_between(now_, utime);
   now_ = utime;
   while (left > 0.0) {
@@ -62,7 +69,6 @@ void KinematicEstimator<N>::advance(Utime utime, FilterRecord<N>* record) {
     if (left > 0.0 && record != nullptr) record->add(true, filter_);
     open_ = true;
   }
-  upright_ = upright_ && std::abs(filter_.state()[at::kEuler + 1]) < model::kSteepest;
 }
 
 template <int N>
@@ -82,7 +88,7 @@ template <int N>
 void KinematicEstimator<N>::doubt(std::size_t instrument) {
   typename KalmanFilter<N>::State sigma = KalmanFilter<N>::State::Zero();
   if (instrument == kHeading || instrument == kAttitude || instrument == kPoseAttitude || instrument == kTag) {
-    sigma.template segment<3>(at::kEuler).setConstant(settings_->start_tilt);
+    sigma.template segment<3>(at::kAngles).setConstant(settings_->start_tilt);
     sigma.template segment<3>(at::kRates).setConstant(settings_->start_rates);
   }
   const bool depth_alone = instrument == kDepth || instrument == kLaser;
@@ -337,15 +343,15 @@ double KinematicEstimator<N>::likelihood() const {
 }
 
 StateEstimate state_of(Utime utime, const model::KinematicVector& x, const model::KinematicVector& variance,
-                       const Eigen::Matrix3d& reference) {
+                       const std::optional<Eigen::Matrix3d>& reference) {
   const model::KinematicPoint point{x, reference};
   StateEstimate state;
   state.utime = utime;
   state.p_WB = point.group(at::kPosition);
   state.q_WB = Eigen::Quaterniond{point.R_WB}.normalized();
   state.nu << point.R_WB.transpose() * point.group(at::kVelocity), point.group(at::kRates);
-  const Eigen::Matrix3d turn2 = point.R_WB.transpose().cwiseAbs2(), euler2 = point.rates_from_euler.cwiseAbs2();
-  state.sigma << variance.segment<3>(at::kPosition), euler2 * variance.segment<3>(at::kEuler),
+  const Eigen::Matrix3d turn2 = point.R_WB.transpose().cwiseAbs2(), angles2 = point.turn_from_angles.cwiseAbs2();
+  state.sigma << variance.segment<3>(at::kPosition), angles2 * variance.segment<3>(at::kAngles),
       turn2 * variance.segment<3>(at::kVelocity), variance.segment<3>(at::kRates);
   state.sigma = state.sigma.cwiseMax(0.0).cwiseSqrt().eval();
   state.valid = true;

@@ -60,7 +60,7 @@ class KinematicEstimator {
   [[nodiscard]] const std::vector<InnovationStatistics>& statistics() const { return statistics_; }
   [[nodiscard]] double likelihood() const;
   /// False from the moment when the attitude left what its angles can tell: it was lost between two samples.
-  [[nodiscard]] bool upright() const { return upright_; }
+  [[nodiscard]] bool oriented() const { return oriented_ && filter_.tells_attitude(); }
 
  private:
   void use(const Ahrs& sample);
@@ -89,12 +89,13 @@ class KinematicEstimator {
   std::optional<Utime> attitude_;  // of the newest sample that told one
   Utime now_{};
   bool open_{};  // time has gone on since the last record
-  bool started_{false}, upright_{true};
+  bool started_{false}, oriented_{true};
 };
 
 /// STATE of a filter's or smoother's numbers: velocity turned into B, spread with it.
 [[nodiscard]] StateEstimate state_of(Utime utime, const model::KinematicVector& x,
-                                     const model::KinematicVector& variance, const Eigen::Matrix3d& reference);
+                                     const model::KinematicVector& variance,
+                                     const std::optional<Eigen::Matrix3d>& reference);
 
 extern template class KinematicEstimator<model::kKinematicStates>;
 extern template class KinematicEstimator<model::kInertialStates>;

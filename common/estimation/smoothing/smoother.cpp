@@ -89,13 +89,13 @@ void Smoother<N>::back_over(const FilterRecord<N>& record, const Visit& visit) {
     transport_back<N>(F, Lambda_);
     if (record.instants[k].turned) {
       const Eigen::Matrix3d& M = *record.instants[k].turned;
-      constexpr int kEuler = model::at::kEuler;
-      const Eigen::Vector3d part = M.transpose() * lambda_.template segment<3>(kEuler);
-      lambda_.template segment<3>(kEuler) = part;
-      const Eigen::Matrix<double, N, 3> columns = Lambda_.template middleCols<3>(kEuler) * M;
-      Lambda_.template middleCols<3>(kEuler) = columns;
-      const Eigen::Matrix<double, 3, N> rows = M.transpose() * Lambda_.template middleRows<3>(kEuler);
-      Lambda_.template middleRows<3>(kEuler) = rows;
+      constexpr int kAngles = model::at::kAngles;
+      const Eigen::Vector3d part = M.transpose() * lambda_.template segment<3>(kAngles);
+      lambda_.template segment<3>(kAngles) = part;
+      const Eigen::Matrix<double, N, 3> columns = Lambda_.template middleCols<3>(kAngles) * M;
+      Lambda_.template middleCols<3>(kAngles) = columns;
+      const Eigen::Matrix<double, 3, N> rows = M.transpose() * Lambda_.template middleRows<3>(kAngles);
+      Lambda_.template middleRows<3>(kAngles) = rows;
     }
     for (int column = 1; column < N; ++column) {
       for (int row = 0; row < column; ++row) Lambda_(row, column) = Lambda_(column, row);

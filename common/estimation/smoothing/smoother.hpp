@@ -19,10 +19,10 @@ struct FilterRecord {
   struct Instant {
     State x;  ///< after all observations
     Covariance P;
-    Eigen::Matrix3d reference{Eigen::Matrix3d::Identity()};  ///< of the angles
-    std::optional<Transition> step{};                        ///< that led here, if time went on
-    std::optional<Eigen::Matrix3d> turned{};                 ///< before the step that led here: see KalmanFilter
-    std::size_t taken{};                                     ///< observations taken in up to and with this instant
+    std::optional<Eigen::Matrix3d> reference{};  ///< of the angles: see KalmanFilter
+    std::optional<Transition> step{};            ///< that led here, if time went on
+    std::optional<Eigen::Matrix3d> turned{};     ///< before the step that led here: see KalmanFilter
+    std::size_t taken{};                         ///< observations taken in up to and with this instant
   };
   struct Taken {
     State row, gain;
@@ -47,7 +47,7 @@ class Smoothed {
   Smoothed(const typename FilterRecord<N>::Instant& filtered, const State& lambda, const Covariance& Lambda)
       : filtered_{filtered}, lambda_{lambda}, Lambda_{Lambda} {}
 
-  [[nodiscard]] const Eigen::Matrix3d& reference() const { return filtered_.reference; }
+  [[nodiscard]] const std::optional<Eigen::Matrix3d>& reference() const { return filtered_.reference; }
   [[nodiscard]] State state() const;
   [[nodiscard]] Covariance covariance() const;
   [[nodiscard]] State variance() const;  ///< the covariance's diagonal, for half the price

@@ -76,7 +76,7 @@ model::KinematicVector widen(const Eigen::Matrix<double, N, 1>& x) {
 
 /// The inertial acceleration less w x v is the derivative of v in B.
 SmoothedState motion_of(Utime utime, const model::KinematicVector& x, const model::KinematicVector& variance,
-                        const Eigen::Matrix3d& reference, const KalmanSettings& settings) {
+                        const std::optional<Eigen::Matrix3d>& reference, const KalmanSettings& settings) {
   StateEstimate state = state_of(utime, x, variance, reference);
   const auto widen = [&state](Eigen::Index begin, const Eigen::Vector3d& lasting) {
     state.sigma.segment<3>(begin) =
@@ -133,7 +133,7 @@ class Run {
       places_.push_back(state.p_WB);
       if (keep_filtered) trial->filtered.push_back(state);
     }
-    if (!estimator_.upright()) {
+    if (!estimator_.oriented()) {
       throw InputError(name_ + ": the attitude is lost; check the noises of gyro and attitude, and their axes");
     }
     if (!estimator_.filter().state().allFinite()) throw InputError(name_ + ": the filter diverged; check the noises");
@@ -160,7 +160,8 @@ class Run {
       smoother.back_over(record, [&](std::size_t i, const Smoothed<N>& smoothed) {
         if (utimes[i] == 0) return;
         const typename KalmanFilter<N>::State x = smoothed.state();
-        if (visit) visit(utimes[i], x, smoothed.covariance());
+        if (visit)
+          visit(utimes[i], x, model::KinematicPoint{widen<N>(x), smoothed.reference()}.R_WB, smoothed.covariance());
         if (trial.smoothed.empty()) trial.biases = widen<N>(x);
         trial.smoothed.push_back(
             motion_of(utimes[i], widen<N>(x), widen<N>(smoothed.variance()), smoothed.reference(), settings_));

@@ -21,11 +21,13 @@ struct SmoothedTrial {
   model::KinematicVector biases{model::KinematicVector::Zero()};  ///< smoothed, at the end of the run
 };
 
-/// Asked for every instant besides the output: full numbers, for tests and tables. Instants come newest first.
-using SmoothedVisit = std::function<void(Utime, const Eigen::VectorXd& x, const Eigen::MatrixXd& P)>;
+/// Asked for every instant besides the output: full numbers, for tests and tables, and the attitude, about which the
+/// angles' part of P is a turn in B (of the printed model: roll, pitch, yaw). Instants come newest first.
+using SmoothedVisit =
+    std::function<void(Utime, const Eigen::VectorXd& x, const Eigen::Matrix3d& R_WB, const Eigen::MatrixXd& P)>;
 
 /// Estimates at the times of the inertial package (of the pose capture without one). InputError in one line when the
-/// run cannot begin, holds nothing to estimate from, or dives too steeply for Euler angles.
+/// run cannot begin, holds nothing to estimate from, or loses its attitude.
 [[nodiscard]] SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings,
                                    const SmoothedVisit& visit = nullptr, const Progress& progress = {},
                                    bool keep_filtered = true);

@@ -12,7 +12,7 @@ Observation observe(const KinematicPoint& point, const Accelerometer& sensor, do
   result.innovation = measured - d.dot(felt);
   result.variance = variance;
   result.set(at::kAcceleration, d);
-  result.set(at::kEuler, -sensor.gravity * (d.transpose() * point.turned_in(point.down_B)).transpose());
+  result.set(at::kAngles, -sensor.gravity * (d.transpose() * point.turned_in(point.down_B)).transpose());
   if (!r.isZero(0.0)) {
     // d/dw of d . (w (w . r) - r (w . w)), and of d . (w_dot x r).
     result.set(at::kRates, d * w.dot(r) + r * w.dot(d) - 2.0 * w * r.dot(d));

@@ -5,13 +5,13 @@ namespace fathom::model {
 namespace {
 
 std::array<Observation, 3> rows(const Eigen::Vector3d& innovation, const Eigen::Vector3d& variance,
-                                const Eigen::Matrix3d& by_euler) {
+                                const Eigen::Matrix3d& by_angles) {
   std::array<Observation, 3> result;
   for (int i = 0; i < 3; ++i) {
     Observation& one = result[static_cast<std::size_t>(i)];
     one.innovation = innovation[i];
     one.variance = variance[i];
-    one.set(at::kEuler, by_euler.row(i).transpose());
+    one.set(at::kAngles, by_angles.row(i).transpose());
   }
   return result;
 }
@@ -24,12 +24,12 @@ Eigen::Vector3d turn_to(const KinematicPoint& point, const Eigen::Quaterniond& m
 
 std::array<Observation, 3> observe_attitude(const KinematicPoint& point, const Eigen::Quaterniond& measured,
                                             double variance) {
-  return rows(turn_to(point, measured), Eigen::Vector3d::Constant(variance), point.rates_from_euler);
+  return rows(turn_to(point, measured), Eigen::Vector3d::Constant(variance), point.turn_from_angles);
 }
 
 std::array<Observation, 3> observe_attitude(const KinematicPoint& point, const Eigen::Quaterniond& measured,
                                             const Eigen::Vector3d& variance) {
-  return rows(point.R_WB * turn_to(point, measured), variance, point.R_WB * point.rates_from_euler);
+  return rows(point.R_WB * turn_to(point, measured), variance, point.R_WB * point.turn_from_angles);
 }
 
 }  // namespace fathom::model

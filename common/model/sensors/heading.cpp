@@ -18,7 +18,7 @@ Observation observe_heading(const KinematicPoint& point, double declination, dou
   result.variance = level > kLevel ? variance : std::numeric_limits<double>::infinity();
   // How turns in B change the heading, by how the angles turn B.
   const Eigen::Vector3d by_turn{0.0, std::sin(euler.x()) / level, std::cos(euler.x()) / level};
-  result.set(at::kEuler, (by_turn.transpose() * point.rates_from_euler).transpose());
+  result.set(at::kAngles, (by_turn.transpose() * point.turn_from_angles).transpose());
   return result;
 }
 

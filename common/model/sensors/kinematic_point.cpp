@@ -4,17 +4,23 @@
 
 namespace fathom::model {
 
-KinematicPoint::KinematicPoint(const KinematicVector& state, const Eigen::Matrix3d& reference) : x{state} {
-  const double sr = sin_roll = std::sin(x[6]), cr = cos_roll = std::cos(x[6]);
-  const double sp = sin_pitch = std::sin(x[7]), cp = cos_pitch = std::cos(x[7]);
-  const double sy = std::sin(x[8]), cy = std::cos(x[8]);
-  Eigen::Matrix3d turned;
-  turned << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,  //
-      sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,        //
-      -sp, cp * sr, cp * cr;
-  R_WB = reference * turned;
-  euler_from_rates << 1.0, sr * sp / cp, cr * sp / cp, 0.0, cr, -sr, 0.0, sr / cp, cr / cp;
-  rates_from_euler << 1.0, 0.0, -sp, 0.0, cr, sr * cp, 0.0, -sr, cr * cp;
+KinematicPoint::KinematicPoint(const KinematicVector& state, const std::optional<Eigen::Matrix3d>& reference)
+    : x{state} {
+  const Eigen::Vector3d angles = group(at::kAngles);
+  if (reference) {
+    R_WB = *reference * quaternion_from_rotation_vector(angles).toRotationMatrix();
+    turn_from_angles = right_jacobian(angles);
+    angles_from_turn = inverse_right_jacobian(angles);
+  } else {
+    const double sr = std::sin(angles.x()), cr = std::cos(angles.x());
+    const double sp = std::sin(angles.y()), cp = std::cos(angles.y());
+    const double sy = std::sin(angles.z()), cy = std::cos(angles.z());
+    R_WB << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,  //
+        sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,      //
+        -sp, cp * sr, cp * cr;
+    angles_from_turn << 1.0, sr * sp / cp, cr * sp / cp, 0.0, cr, -sr, 0.0, sr / cp, cr / cp;
+    turn_from_angles << 1.0, 0.0, -sp, 0.0, cr, sr * cp, 0.0, -sr, cr * cp;
+  }
   down_B = R_WB.row(2).transpose();
 }
 

@@ -5,17 +5,19 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <numbers>
+#include <optional>
 
 #include "common/base/spatial.hpp"
 
 namespace fathom::model {
 
-/// Where the groups of three begin: position and velocity in W; roll, pitch, yaw; acceleration of Bo in W seen in B
-/// (inertial: v_dot + w x v); rates and their derivatives in B; biases of accelerometers, gyros and velocity log in B.
+/// Where the groups of three begin: position and velocity in W; attitude (KinematicPoint); acceleration of Bo in W seen
+/// in B (inertial: v_dot + w x v); rates and their derivatives in B; biases of accelerometers, gyros and velocity log
+/// in B.
 namespace at {
 inline constexpr int kPosition = 0;
 inline constexpr int kVelocity = 3;
-inline constexpr int kEuler = 6;
+inline constexpr int kAngles = 6;
 inline constexpr int kAcceleration = 9;
 inline constexpr int kRates = 12;
 inline constexpr int kRateSlopes = 15;
@@ -23,8 +25,8 @@ inline constexpr int kBias = 18;
 inline constexpr int kLogBias = 24;
 }  // namespace at
 inline constexpr int kKinematicStates = 18;
-inline constexpr int kInertialStates = kKinematicStates + 6;  ///< with the biases of accelerometers and gyros
-inline constexpr int kMostStates = kInertialStates + 3;       ///< with that of a velocity log
+inline constexpr int kInertialStates = kKinematicStates + 6;          ///< with the biases of accelerometers and gyros
+inline constexpr int kMostStates = kInertialStates + 3;               ///< with that of a velocity log
 inline constexpr double kGravity = 9.80665;                           ///< m/s^2
 inline constexpr double kSteepest = 85.0 * std::numbers::pi / 180.0;  ///< rad, pitch beyond which roll and yaw blur
 
@@ -52,28 +54,28 @@ struct Observation {
 };
 
 struct KinematicPoint {
-  /// The angles are counted from `reference`: R_WB = reference R(roll, pitch, yaw). With the identity they are the
-  /// paper's; another one keeps a vehicle that stands on its bow away from their singularity.
-  explicit KinematicPoint(const KinematicVector& state, const Eigen::Matrix3d& reference = Eigen::Matrix3d::Identity());
+  /// The attitude is a rotation vector in B, of the error state on SO(3): R_WB = reference exp(x). Without a reference
+  /// it is roll, pitch and yaw, the state that the paper prints.
+  explicit KinematicPoint(const KinematicVector& state, const std::optional<Eigen::Matrix3d>& reference = std::nullopt);
 
   KinematicVector x;
-  double sin_roll, cos_roll, sin_pitch, cos_pitch;
   Eigen::Matrix3d R_WB;
-  Eigen::Matrix3d euler_from_rates;  ///< d(roll, pitch, yaw)/dt = this * w_WB_B (Fossen 2011, eq. 2.28)
-  Eigen::Matrix3d rates_from_euler;  ///< its inverse: small turns in B by small changes of the angles
+  Eigen::Matrix3d angles_from_turn;  ///< small changes of the three numbers by small turns in B; of roll, pitch, yaw:
+                                     ///< Fossen 2011, eq. 2.28
+  Eigen::Matrix3d turn_from_angles;  ///< its inverse
   Eigen::Vector3d down_B;            ///< R_WB^T e_z
 
   [[nodiscard]] Eigen::Vector3d group(int begin) const { return x.segment<3>(begin); }
-  /// d(R_WB a_B)/d(euler).
+  /// d(R_WB a_B)/d(angles).
   [[nodiscard]] Eigen::Matrix3d turned_out(const Eigen::Vector3d& a_B) const {
-    return -R_WB * skew(a_B) * rates_from_euler;
+    return -R_WB * skew(a_B) * turn_from_angles;
   }
-  /// d(R_WB^T c_W)/d(euler), with c_B = R_WB^T c_W.
-  [[nodiscard]] Eigen::Matrix3d turned_in(const Eigen::Vector3d& c_B) const { return skew(c_B) * rates_from_euler; }
+  /// d(R_WB^T c_W)/d(angles), with c_B = R_WB^T c_W.
+  [[nodiscard]] Eigen::Matrix3d turned_in(const Eigen::Vector3d& c_B) const { return skew(c_B) * turn_from_angles; }
   /// Writes the row of what grows as the point p_BP of the hull moves along `along_W`.
   void set_along(const Eigen::Vector3d& along_W, const Eigen::Vector3d& p_BP, Observation& observation) const {
     observation.set(at::kPosition, along_W);
-    if (!p_BP.isZero(0.0)) observation.set(at::kEuler, (along_W.transpose() * turned_out(p_BP)).transpose());
+    if (!p_BP.isZero(0.0)) observation.set(at::kAngles, (along_W.transpose() * turned_out(p_BP)).transpose());
   }
 };
 

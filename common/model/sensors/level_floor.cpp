@@ -10,7 +10,7 @@ constexpr double kFlattest = 0.17;  // cosine of 80 deg between line of sight an
 struct Sight {
   double distance{};
   double by_depth{};
-  Eigen::Vector3d by_euler{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d by_angles{Eigen::Vector3d::Zero()};
 };
 
 std::optional<Sight> sight(const KinematicPoint& point, double floor, const Pose& X_BC,
@@ -21,7 +21,7 @@ std::optional<Sight> sight(const KinematicPoint& point, double floor, const Pose
   if (c < kFlattest || h <= 0.0) return std::nullopt;
   Sight seen{.distance = h / c, .by_depth = -1.0 / c};
   const Eigen::Vector3d by_down = -(X_BC.p + seen.distance * u_B) / c;
-  seen.by_euler = point.turned_in(point.down_B).transpose() * by_down;
+  seen.by_angles = point.turned_in(point.down_B).transpose() * by_down;
   return seen;
 }
 
@@ -43,7 +43,7 @@ std::optional<std::array<Observation, 3>> observe_flow(const KinematicPoint& poi
   const Eigen::Vector3d v_B = point.R_WB.transpose() * point.group(at::kVelocity);
   const Eigen::Vector3d v_C = R_CB * (v_B + point.group(at::kRates).cross(X_BC.p));
   const Eigen::Matrix3d by_velocity = R_CB * point.R_WB.transpose();
-  const Eigen::Matrix3d by_euler = R_CB * point.turned_in(v_B), by_rates = -R_CB * skew(X_BC.p);
+  const Eigen::Matrix3d by_angles = R_CB * point.turned_in(v_B), by_rates = -R_CB * skew(X_BC.p);
   std::array<Observation, 3> result;
   for (int i = 0; i < 3; ++i) {
     Observation& one = result[static_cast<std::size_t>(i)];
@@ -52,7 +52,7 @@ std::optional<std::array<Observation, 3>> observe_flow(const KinematicPoint& poi
     one.variance = variance[i];
     one.set(at::kPosition, {0.0, 0.0, by_distance * seen->by_depth});
     one.set(at::kVelocity, -by_velocity.row(i).transpose() / d);
-    one.set(at::kEuler, -by_euler.row(i).transpose() / d + by_distance * seen->by_euler);
+    one.set(at::kAngles, -by_angles.row(i).transpose() / d + by_distance * seen->by_angles);
     if (!X_BC.p.isZero(0.0)) one.set(at::kRates, -by_rates.row(i).transpose() / d);
   }
   return result;
@@ -68,7 +68,7 @@ std::optional<Observation> observe_floor_point(const KinematicPoint& point, doub
   one.innovation = range - seen->distance;
   one.variance = variance;
   one.set(at::kPosition, {0.0, 0.0, seen->by_depth});
-  one.set(at::kEuler, seen->by_euler);
+  one.set(at::kAngles, seen->by_angles);
   return one;
 }
 

@@ -6,14 +6,14 @@ std::array<Observation, 3> observe_velocity(const KinematicPoint& point, const E
                                             const Eigen::Vector3d& measured, double variance, bool biased) {
   const Eigen::Vector3d v_B = point.R_WB.transpose() * point.group(at::kVelocity);
   const Eigen::Vector3d innovation = measured - v_B - point.group(at::kRates).cross(p_BD);
-  const Eigen::Matrix3d by_euler = point.turned_in(v_B), by_rates = -skew(p_BD);
+  const Eigen::Matrix3d by_angles = point.turned_in(v_B), by_rates = -skew(p_BD);
   std::array<Observation, 3> result;
   for (int i = 0; i < 3; ++i) {
     Observation& one = result[static_cast<std::size_t>(i)];
     one.innovation = innovation[i];
     one.variance = variance;
     one.set(at::kVelocity, point.R_WB.col(i));
-    one.set(at::kEuler, by_euler.row(i).transpose());
+    one.set(at::kAngles, by_angles.row(i).transpose());
     if (!p_BD.isZero(0.0)) one.set(at::kRates, by_rates.row(i).transpose());
     if (biased) one.add_bias(point.x, at::kLogBias - at::kBias + i);
   }

@@ -70,3 +70,21 @@ TEST_CASE("spatial: angles fold into (-pi, pi]") {
   CHECK(wrap_angle(0.5 - 40.0 * kPi) == doctest::Approx(0.5));
   CHECK(wrap_angle(-3.5) == doctest::Approx(2.0 * kPi - 3.5));
 }
+
+TEST_CASE("spatial: a small change of a rotation vector turns by its right Jacobian, small vectors and long ones") {
+  constexpr double kStep = 1e-6, kDifference = 1e-8;
+  for (const Vector3d& phi : {Vector3d(0.0, 0.0, 0.0), Vector3d(1e-4, -2e-4, 5e-5), Vector3d(6e-3, -8e-3, 1e-4),
+                              Vector3d(0.4, -1.1, 0.7), Vector3d(2.0, 1.5, -1.2)}) {
+    const Eigen::Quaterniond q = quaternion_from_rotation_vector(phi);
+    Matrix3d J;
+    for (int i = 0; i < 3; ++i) {
+      const Vector3d step = kStep * Vector3d::Unit(i);
+      J.col(i) = (rotation_vector_from_quaternion(q.conjugate() * quaternion_from_rotation_vector(phi + step)) -
+                  rotation_vector_from_quaternion(q.conjugate() * quaternion_from_rotation_vector(phi - step))) /
+                 (2.0 * kStep);
+    }
+    CAPTURE(phi.transpose());
+    CHECK((right_jacobian(phi) - J).norm() < kDifference);
+    CHECK((right_jacobian(phi) * inverse_right_jacobian(phi) - Matrix3d::Identity()).norm() < 1e-12);
+  }
+}

@@ -178,9 +178,9 @@ TEST_CASE("conventions: both papers say the same in these words") {
         [] {
           check_angles();
           KinematicVector x = KinematicVector::Zero();
-          x[at::kEuler + 1] = 0.3;
+          x[at::kAngles + 1] = 0.3;
           // Level in roll, bow up: turning about the body's down axis turns the heading faster than itself.
-          CHECK(KinematicPoint{x}.euler_from_rates(2, 2) == doctest::Approx(1.0 / std::cos(0.3)));
+          CHECK(KinematicPoint{x}.angles_from_turn(2, 2) == doctest::Approx(1.0 / std::cos(0.3)));
         }},
        {"`m_X` = m - X_udot, positive", check_masses},
        {"drag derivatives that dissipate are negative",
@@ -220,7 +220,7 @@ TEST_CASE("conventions: both papers say the same in these words") {
         }},
        {"`declination` is added to a compass heading", [] {
           KinematicVector x = KinematicVector::Zero();
-          x[at::kEuler + 2] = 0.2;
+          x[at::kAngles + 2] = 0.2;
           const Observation seen = observe_heading(KinematicPoint{x}, 0.05, 0.15, 1.0);
           CHECK(seen.innovation == doctest::Approx(0.0));
         }}});

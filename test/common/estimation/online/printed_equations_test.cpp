@@ -46,7 +46,7 @@ Vector3d predicted_velocity(const test::SyntheticMotion& m, double t) {
 /// What Fathom's model of an accelerometer says at rest, with the attitude in roll, pitch, yaw.
 Vector3d felt_at_rest(const Vector3d& euler) {
   model::KinematicVector x = model::KinematicVector::Zero();
-  x.segment<3>(model::at::kEuler) = euler;
+  x.segment<3>(model::at::kAngles) = euler;
   Vector3d felt;
   for (int i = 0; i < 3; ++i) {
     const model::Accelerometer along{.direction_B = Vector3d::Unit(i)};

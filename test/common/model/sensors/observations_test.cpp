@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,17 +36,20 @@ KinematicVector some_state() {
 
 using Look = std::function<Observation(const KinematicPoint&)>;
 
-void check_row(const std::string& name, const Look& look, double tolerance = kDifference) {
+using Reference = std::optional<Eigen::Matrix3d>;
+
+void check_row(const std::string& name, const Reference& reference, const Look& look, double tolerance = kDifference) {
   CAPTURE(name);
   const KinematicVector x = some_state();
-  const Observation here = look(KinematicPoint{x});
+  const Observation here = look(KinematicPoint{x, reference});
   for (int i = 0; i < kMostStates; ++i) {
     constexpr double kStep = 1e-6;
     KinematicVector above = x, below = x;
     above[i] += kStep;
     below[i] -= kStep;
     const double slope =
-        -(look(KinematicPoint{above}).innovation - look(KinematicPoint{below}).innovation) / (2.0 * kStep);
+        -(look(KinematicPoint{above, reference}).innovation - look(KinematicPoint{below, reference}).innovation) /
+        (2.0 * kStep);
     CAPTURE(i);
     CHECK(here.row[i] == doctest::Approx(slope).epsilon(tolerance).scale(1.0));
     if ((here.groups >> static_cast<unsigned>(i / 3) & 1U) == 0) CHECK(here.row[i] == 0.0);
@@ -66,7 +70,7 @@ TEST_CASE("accelerometer: at rest and level the one along z says -g, and bias ad
 
 TEST_CASE("accelerometer: bow down by 0.2 rad it feels gravity forward as Pereira and Duncan's eq. 12 says") {
   KinematicVector x = KinematicVector::Zero();
-  x[at::kEuler + 1] = -0.2;
+  x[at::kAngles + 1] = -0.2;
   // g = (-g sin(theta), ...) and a = ... - g: along x the instrument says + g sin(theta).
   const double said = kGravity * std::sin(-0.2);
   CHECK(observe(KinematicPoint{x}, Accelerometer{}, said, 1.0).innovation ==
@@ -86,7 +90,7 @@ TEST_CASE("accelerometer: off the axis of a steady turn it feels the centripetal
 
 TEST_CASE("heading: declination is added to what the compass says, and the innovation goes the short way round") {
   KinematicVector x = KinematicVector::Zero();
-  x[at::kEuler + 2] = 3.1;
+  x[at::kAngles + 2] = 3.1;
   CHECK(observe_heading(KinematicPoint{x}, 0.05, -3.1, 1.0).innovation ==
         doctest::Approx(2.0 * std::acos(-1.0) - 6.2 + 0.05).epsilon(1e-9));
 }
@@ -94,7 +98,7 @@ TEST_CASE("heading: declination is added to what the compass says, and the innov
 TEST_CASE("depth: a port before the origin goes down when the bow does") {
   KinematicVector x = KinematicVector::Zero();
   x[2] = 5.0;
-  x[at::kEuler + 1] = -0.3;
+  x[at::kAngles + 1] = -0.3;
   const Observation seen = observe_depth(KinematicPoint{x}, {1.0, 0.0, 0.0}, 5.0 + std::sin(0.3), 1.0);
   CHECK(seen.innovation == doctest::Approx(0.0).epsilon(kExact).scale(1.0));
 }
@@ -110,7 +114,7 @@ TEST_CASE("range: three, four, five, and no direction on top of the transponder"
 TEST_CASE("velocity log: heading east at 1 m/s over ground it says 1 m/s ahead") {
   KinematicVector x = KinematicVector::Zero();
   x[at::kVelocity + 1] = 1.0;
-  x[at::kEuler + 2] = 0.5 * std::acos(-1.0);
+  x[at::kAngles + 2] = 0.5 * std::acos(-1.0);
   for (const auto& one : observe_velocity(KinematicPoint{x}, {0, 0, 0}, {1.0, 0.0, 0.0}, 1.0)) {
     CHECK(one.innovation == doctest::Approx(0.0).epsilon(kExact).scale(1.0));
   }
@@ -145,41 +149,59 @@ TEST_CASE(
   const auto dot = observe_floor_point(level, 1.6, X_BC, {0.0, 0.0, 0.53}, 1.0);
   REQUIRE(dot);
   CHECK(dot->innovation == doctest::Approx(0.03).epsilon(1e-9));
-  x[at::kEuler] = 3.0;  // bottom up: there is no floor in sight
+  x[at::kAngles] = 3.0;  // bottom up: there is no floor in sight
   CHECK_FALSE(observe_flow(KinematicPoint{x}, 1.6, X_BC, {0.0, 0.4, -0.6}, {1.0, 1.0, 1.0}));
   CHECK_FALSE(observe_floor_point(KinematicPoint{x}, 1.6, X_BC, {0.0, 0.0, 0.53}, 1.0));
 }
 
-TEST_CASE("observations: every row is the derivative of what is predicted") {
+namespace {
+
+void check_all(const Reference& reference, bool over_a_floor) {
   const Eigen::Vector3d arm{0.3, -0.1, 0.2}, d = Eigen::Vector3d(0.6, 0.64, 0.48);
-  check_row("accelerometer", [&](const auto& p) { return observe(p, Accelerometer{arm, d, 1}, 0.3, 1.0); });
-  check_row("gyro", [&](const auto& p) { return observe(p, Gyro{d, 4}, 0.1, 1.0); });
-  check_row("heading", [&](const auto& p) { return observe_heading(p, 0.02, 1.25, 1.0); });
-  check_row("depth", [&](const auto& p) { return observe_depth(p, arm, 2.2, 1.0); });
-  check_row("range", [&](const auto& p) { return observe_range(p, arm, {20.0, -5.0, 12.0}, 22.0, 1.0); });
-  const KinematicPoint here{some_state()};
+  check_row("accelerometer", reference, [&](const auto& p) { return observe(p, Accelerometer{arm, d, 1}, 0.3, 1.0); });
+  check_row("gyro", reference, [&](const auto& p) { return observe(p, Gyro{d, 4}, 0.1, 1.0); });
+  check_row("heading", reference, [&](const auto& p) { return observe_heading(p, 0.02, 1.25, 1.0); });
+  check_row("depth", reference, [&](const auto& p) { return observe_depth(p, arm, 2.2, 1.0); });
+  check_row("range", reference, [&](const auto& p) { return observe_range(p, arm, {20.0, -5.0, 12.0}, 22.0, 1.0); });
+  const KinematicPoint here{some_state(), reference};
   const Eigen::Quaterniond near = Eigen::Quaterniond{here.R_WB} * quaternion_from_rotation_vector({1e-3, -5e-4, 2e-4});
   const Pose X_WT{{4.0, 11.0, 3.0}, near * quaternion_from_rotation_vector({0.1, 1.0, 0.3})};
   const Pose X_BC{arm, quaternion_from_rotation_vector({0.5, 1.0, -0.2})};
   const Eigen::Quaterniond q_WC = near * X_BC.q;
   const Pose X_CT{q_WC.conjugate() * (X_WT.p - here.group(0) - near * X_BC.p), q_WC.conjugate() * X_WT.q};
   for (std::size_t i = 0; i < 3; ++i) {
-    check_row("position", [&](const auto& p) { return observe_position(p, arm, {3, 9, 2}, {1, 1, 1})[i]; });
-    check_row("velocity", [&](const auto& p) { return observe_velocity(p, arm, {0.3, 0.1, 0}, 1.0)[i]; });
-    check_row("velocity with bias", [&](const auto& p) {
+    check_row("position", reference, [&](const auto& p) { return observe_position(p, arm, {3, 9, 2}, {1, 1, 1})[i]; });
+    check_row("velocity", reference, [&](const auto& p) { return observe_velocity(p, arm, {0.3, 0.1, 0}, 1.0)[i]; });
+    check_row("velocity with bias", reference, [&](const auto& p) {
       return observe_velocity(p, arm, {0.3, 0.1, 0}, 1.0, true)[i];
     });
     check_row(
-        "attitude", [&](const auto& p) { return observe_attitude(p, near, 1.0)[i]; }, kSmallTurn);
+        "attitude", reference, [&](const auto& p) { return observe_attitude(p, near, 1.0)[i]; }, kSmallTurn);
     check_row(
-        "attitude by heading and tilt",
+        "attitude by heading and tilt", reference,
         [&](const auto& p) { return observe_attitude(p, near, Eigen::Vector3d(1.0, 1.0, 4.0))[i]; }, kSmallTurn);
-    check_row("tag", [&](const auto& p) { return observe_tag(p, X_WT, X_BC, X_CT, 1.0, 1.0, 1.0)[i]; });
+    check_row("tag", reference, [&](const auto& p) { return observe_tag(p, X_WT, X_BC, X_CT, 1.0, 1.0, 1.0)[i]; });
   }
+  if (!over_a_floor) return;
   const Pose down{arm, quaternion_from_rotation_vector({0.1, -0.2, 1.4})};
   for (std::size_t i = 0; i < 3; ++i)
-    check_row("flow", [&](const auto& p) { return (*observe_flow(p, 3.5, down, {0.1, -0.2, 0.3}, {1, 1, 1}))[i]; });
-  check_row("floor point", [&](const auto& p) { return *observe_floor_point(p, 3.5, down, {0.2, -0.1, 1.1}, 1.0); });
+    check_row("flow", reference, [&](const auto& p) {
+      return (*observe_flow(p, 3.5, down, {0.1, -0.2, 0.3}, {1, 1, 1}))[i];
+    });
+  check_row("floor point", reference, [&](const auto& p) {
+    return *observe_floor_point(p, 3.5, down, {0.2, -0.1, 1.1}, 1.0);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("observations: every row is the derivative of what is predicted, by roll, pitch, yaw and on rotations") {
+  check_all(std::nullopt, true);
+  const KinematicPoint here{some_state()};
+  const Eigen::Vector3d angles = here.group(at::kAngles);
+  const Eigen::Quaterniond back = quaternion_from_rotation_vector(-angles);
+  check_all(here.R_WB * back, true);                               // the same attitude
+  check_all(rotation_from_euler({0.4, 1.5, -2.0}) * back, false);  // on its bow: no angles of Euler's tell that
 }
 
 }  // namespace fathom::model
