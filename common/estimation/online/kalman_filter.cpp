@@ -7,7 +7,8 @@ namespace {
 
 namespace at = model::at;
 
-constexpr double kLost = 1.0;  // rad that updates of one instant may turn an attitude by, far beyond what is linear
+constexpr double kMostTurn = 1.0;       // rad, of one step: beyond, what the rates were is not known
+constexpr double kMostCorrected = 6.0;  // rad, of one instant: at a whole turn a rotation vector is singular
 constexpr double kPreciseBeyond =
     1e8;  // variance before over noise: from here on the plain update loses too many digits
 
@@ -137,7 +138,8 @@ void KalmanFilter<N>::start(const State& x, const State& sigma, const Eigen::Mat
 template <int N>
 bool KalmanFilter<N>::tells_attitude() const {
   const Eigen::Vector3d angles = x_.template segment<3>(at::kAngles);
-  return reference_ ? angles.squaredNorm() < kLost * kLost : std::abs(angles.y()) < model::kSteepest;
+  if (!reference_) return std::abs(angles.y()) < model::kSteepest;
+  return angles.norm() < kMostCorrected && (!transition_ || transition_->turn.norm() < kMostTurn);
 }
 
 template <int N>
