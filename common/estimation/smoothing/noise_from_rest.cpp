@@ -223,7 +223,7 @@ KalmanSettings noise_from_rest(const Recording& recording, KalmanSettings settin
   }
   const auto first = std::find_if(recording.ahrs.begin(), recording.ahrs.end(),
                                   [&](const Ahrs& one) { return one.has_attitude && one.utime >= rest->from; });
-  if (first != recording.ahrs.end()) {
+  if (first != recording.ahrs.end() && settings.attitude_memory == 0.0) {  // seconds of rest see no wandering
     const auto heading = [&](const Ahrs& one) -> std::optional<double> {
       if (!one.has_attitude) return std::nullopt;
       return rotation_vector_from_quaternion(first->q_WB.conjugate() * one.q_WB).z();

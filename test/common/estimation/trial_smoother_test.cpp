@@ -133,7 +133,12 @@ TEST_CASE_FIXTURE(Fixture, "noise: a rest gives what the instruments have, and a
   CHECK(found.accelerometer_noise.mean() == doctest::Approx(0.05).epsilon(0.15));  // 300 samples per axis
   CHECK(found.gyro_noise.mean() == doctest::Approx(0.005).epsilon(0.15));
   CHECK(found.depth_noise == doctest::Approx(0.02).epsilon(0.35));  // 60 samples, and the vehicle bobs on its chain
+  CHECK(*found.heading_noise == doctest::Approx(instruments.heading_noise.value_or(1.0)).epsilon(0.35));
   REQUIRE(notes.size() == 1);
+  settings.attitude_memory = 30.0;  // s: what wanders for so long does not show in seconds of rest
+  const KalmanSettings wandering = noise_from_rest(trial.recording, settings, notes);
+  CHECK(wandering.heading_noise == settings.heading_noise);
+  CHECK(wandering.attitude_noise == settings.attitude_noise);
   trial.recording.ahrs.erase(trial.recording.ahrs.begin(), trial.recording.ahrs.begin() + 300);
   notes.clear();
   Recording moving = trial.recording;
