@@ -57,25 +57,25 @@ Matrix slope(const Vector& x, double dt, KinematicModel model) {
   return F;
 }
 
-/// The integral of Phi G G' Phi' over the step, by Simpson's rule, with the attitude held.
+/// The integral of F G G' F' over the step, by Simpson's rule, with the attitude held.
 Matrix noise_of(const Vector& x, double dt, const ProcessNoise& noise, KinematicModel model) {
   const auto n = x.size();
   const auto density = [&](double left) {
     Matrix G = Matrix::Zero(n, 12);
     const Eigen::Matrix3d R = rotation_from_euler(x.segment<3>(6));
-    Matrix Phi = Matrix::Identity(n, n);
+    Matrix F = Matrix::Identity(n, n);
     Eigen::Matrix3d C;
     const double phi = x[6], theta = x[7];
     C << 1, std::sin(phi) * std::tan(theta), std::cos(phi) * std::tan(theta), 0, std::cos(phi), -std::sin(phi), 0,
         std::sin(phi) / std::cos(theta), std::cos(phi) / std::cos(theta);
-    Phi.block<3, 3>(0, 3) = left * Eigen::Matrix3d::Identity();
+    F.block<3, 3>(0, 3) = left * Eigen::Matrix3d::Identity();
     if (model == KinematicModel::kCoupled) {
-      Phi.block<3, 3>(0, 9) = 0.5 * left * left * R;
-      Phi.block<3, 3>(3, 9) = left * R;
+      F.block<3, 3>(0, 9) = 0.5 * left * left * R;
+      F.block<3, 3>(3, 9) = left * R;
     }
-    Phi.block<3, 3>(6, 12) = left * C;
-    Phi.block<3, 3>(6, 15) = 0.5 * left * left * C;
-    Phi.block<3, 3>(12, 15) = left * Eigen::Matrix3d::Identity();
+    F.block<3, 3>(6, 12) = left * C;
+    F.block<3, 3>(6, 15) = 0.5 * left * left * C;
+    F.block<3, 3>(12, 15) = left * Eigen::Matrix3d::Identity();
     G.block<3, 3>(9, 0) = noise.jerk * Eigen::Matrix3d::Identity();
     G.block<3, 3>(15, 3) = noise.angular_jerk * Eigen::Matrix3d::Identity();
     if (model == KinematicModel::kPrinted) G.block<3, 3>(3, 6) = noise.velocity * Eigen::Matrix3d::Identity();
@@ -92,7 +92,7 @@ Matrix noise_of(const Vector& x, double dt, const ProcessNoise& noise, Kinematic
       wider.block<3, 3>(24, 15) = noise.log_bias * Eigen::Matrix3d::Identity();
       G = wider;
     }
-    return Matrix(Phi * G * G.transpose() * Phi.transpose());
+    return Matrix(F * G * G.transpose() * F.transpose());
   };
   constexpr int kParts = 4;  // exact for the chains' polynomials but their highest power
   Matrix Q = Matrix::Zero(n, n);
@@ -190,19 +190,19 @@ void against_textbook(KinematicModel model) {
   }
   // Rauch, Tung and Striebel, word by word.
   std::vector<Vector> xs = dense.x;
-  std::vector<Matrix> Ps = dense.P;
+  std::vector<Matrix> P_smoothed = dense.P;
   for (int k = kSteps - 1; k >= 0; --k) {
     const auto i = static_cast<std::size_t>(k);
     const Matrix C = dense.P[i] * dense.F[i].transpose() * dense.P_predicted[i].inverse();
     xs[i] = dense.x[i] + C * (xs[i + 1] - dense.predicted[i]);
-    Ps[i] = dense.P[i] + C * (Ps[i + 1] - dense.P_predicted[i]) * C.transpose();
+    P_smoothed[i] = dense.P[i] + C * (P_smoothed[i + 1] - dense.P_predicted[i]) * C.transpose();
   }
   Smoother<N> smoother;
   int visited = 0;
   smoother.back_over(record, [&](std::size_t k, const Smoothed<N>& smoothed) {
     ++visited;
     CHECK((smoothed.state() - xs[k]).norm() < 20.0 * kSlope);
-    CHECK((smoothed.covariance() - Ps[k]).norm() < 100.0 * kSlope * Ps[k].norm());
+    CHECK((smoothed.covariance() - P_smoothed[k]).norm() < 100.0 * kSlope * P_smoothed[k].norm());
     CHECK((smoothed.variance() - smoothed.covariance().diagonal()).norm() < kSame);
   });
   CHECK(visited == kSteps);
