@@ -202,13 +202,12 @@ std::string certainty_section(const DiagnosisResult& result) {
     }
   }
   for (const auto& axis : result.residual_after) {
-    if (!(axis.p_value < kNotRandom) || axis.autocorrelation_time_s < kNoMemory) continue;
+    if (!axis.remembers() && !axis.swings()) continue;
     const auto named = std::ranges::find_if(kAxes, [&](const Axis& a) { return axis.axis == a.force; });
     open += "<li>What is left in <b>" + escape(named == kAxes.end() ? axis.axis : std::string(named->name)) + "</b> " +
-            (std::isfinite(axis.swing_period_s)
-                 ? "swings, every " + escape(number(axis.swing_period_s, 2)) +
-                       " s or so: waves of many frequencies do that, a tether or a load that hangs, and what is "
-                       "missing where the vehicle itself is driven to and fro.</li>\n"
+            (axis.swings()
+                 ? "swings, every " + escape(number(axis.swing_period_s, 2)) + " s or so, as by " +
+                       std::string(kWhatSwings) + ".</li>\n"
                  : "remembers itself for about " + escape(number(axis.autocorrelation_time_s, 2)) +
                        " s: a random force does (turbulence, a swinging tether), and so does something small that is "
                        "still missing.</li>\n");

@@ -147,7 +147,8 @@ std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const 
     row.p_value = std::min(statistic_p * static_cast<double>(trials.size()), 1.0);  // the least of so many
     row.autocorrelation_time_s = memory / weight;
     for (std::size_t lag = 0; lag < pooled.size(); ++lag) pooled[lag] /= pooled_weight[lag];
-    if (!pooled.empty()) row.swing_period_s = swing_period(pooled, pooled_step, pooled_weight.front());
+    if (row.p_value < kNotRandom && !pooled.empty())
+      row.swing_period_s = swing_period(pooled, pooled_step, pooled_weight.front());
     row.explained =
         applied_square > 0.0 ? 1.0 - residual_square / applied_square : std::numeric_limits<double>::quiet_NaN();
     if (applied_square > 0.0) row.noise = noise_square / applied_square;

@@ -116,14 +116,12 @@ void evidence(Lines& out, const Stored& stored) {
 void residual(Lines& out, const DiagnosisResult& result) {
   out.title("5. What is left?");
   for (const AxisWhiteness& axis : result.residual_after) {
-    const bool memory = axis.p_value < kNotRandom && axis.autocorrelation_time_s >= kNoMemory;
-    out.line(
-        (memory ? "remembers itself for " : "white enough: memory ") + number(axis.autocorrelation_time_s, 2) +
-            " s (threshold " + number(kNoMemory) + "), p " + number(axis.p_value, 2) + " (threshold " +
-            number(kNotRandom) + "), " + percent(axis.explained) + " of the applied wrench accounted for" +
-            (memory && std::isfinite(axis.swing_period_s) ? ", swings every " + number(axis.swing_period_s, 2) + " s"
-                                                          : ""),
-        "    " + axis.axis, 8);
+    out.line((axis.remembers() ? "remembers itself for " : "white enough: memory ") +
+                 number(axis.autocorrelation_time_s, 2) + " s (threshold " + number(kNoMemory) + "), p " +
+                 number(axis.p_value, 2) + " (threshold " + number(kNotRandom) + "), " + percent(axis.explained) +
+                 " of the applied wrench accounted for" +
+                 (axis.swings() ? ", swings every " + number(axis.swing_period_s, 2) + " s" : ""),
+             "    " + axis.axis, 8);
   }
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/samples/correction.hpp"
@@ -52,6 +54,15 @@ struct Foretold {
   double typical{};  ///< s, the middle one of those lengths
 };
 
+constexpr double kNoMemory = 0.4;    ///< s: white noise shows half of what a residual is the mean over, .25 to .35 s
+constexpr double kNotRandom = 0.01;  ///< p-value below which a residual counts as having a memory
+
+/// What is known to make a residual swing.
+constexpr std::string_view kWhatSwings =
+    "waves of many frequencies, a tether or a load that hangs, or something that is missing where the vehicle itself "
+    "is "
+    "driven to and fro";
+
 /// Residual of one degree of freedom.
 struct AxisWhiteness {
   std::string axis;  ///< "X" .. "N"
@@ -61,10 +72,10 @@ struct AxisWhiteness {
   double explained{};    ///< share of variance explained, of the applied wrench's axis; NaN where none is applied
   double applied_rms{};  ///< N or N m, of that wrench about its mean
   double noise{};  ///< what the sensors' white noise alone leaves of a residual, over the applied wrench's variance
-};
 
-constexpr double kNoMemory = 0.4;    ///< s: white noise shows half of what a residual is the mean over, .25 to .35 s
-constexpr double kNotRandom = 0.01;  ///< p-value below which a residual counts as having a memory
+  [[nodiscard]] bool remembers() const { return p_value < kNotRandom && autocorrelation_time_s >= kNoMemory; }
+  [[nodiscard]] bool swings() const { return std::isfinite(swing_period_s); }
+};
 
 /// What to fly to tell an effect from another that explains the same.
 struct ToldApart {

@@ -237,13 +237,10 @@ std::string paragraph(const Conclusion& conclusion) {
 std::string what_swings(std::span<const AxisWhiteness> left) {
   std::string axes;
   for (const AxisWhiteness& axis : left) {
-    if (!(axis.p_value < kNotRandom) || !std::isfinite(axis.swing_period_s)) continue;
-    axes += text("%s %s every %.1f s", axes.empty() ? "" : ",", axis.axis.c_str(), axis.swing_period_s);
+    if (axis.swings())
+      axes += text("%s %s every %.1f s", axes.empty() ? "" : ",", axis.axis.c_str(), axis.swing_period_s);
   }
-  if (axes.empty()) return "";
-  return " What is left swings:" + axes +
-         ". Waves of many frequencies do that, and a tether or a load that hangs; so does what is missing where the "
-         "vehicle itself is driven to and fro.";
+  return axes.empty() ? "" : " What is left swings:" + axes + ", as by " + std::string{kWhatSwings} + ".";
 }
 
 }  // namespace fathom::verdict

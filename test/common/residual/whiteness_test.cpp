@@ -60,6 +60,7 @@ TEST_CASE("whiteness: noise of the velocities makes the share of the residual th
   REQUIRE(rows.front().axis == "X");
   // 570 independent means: their variance is known to 6 %.
   CHECK(rows.front().noise == doctest::Approx(1.0 - rows.front().explained).epsilon(0.25));
+  CHECK_FALSE(rows.front().swings());
 }
 
 TEST_CASE("whiteness: autocorrelation by hand, gaps left out") {
