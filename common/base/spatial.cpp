@@ -40,26 +40,13 @@ Eigen::Vector3d rotation_vector_from_quaternion(const Eigen::Quaterniond& q) {
   return sign * scale * q.vec();
 }
 
-namespace {
-
-constexpr double kSmallTurn2 = 1e-4;  // rad^2, below which series of three terms are exact to 1e-16
-
-}  // namespace
-
 Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& phi) {
   const double x = phi.squaredNorm(), angle = std::sqrt(x);
-  const bool small = x < kSmallTurn2;
+  const bool small = x < 1e-4;  // rad^2: series of three terms are exact to 1e-16
   const double one = small ? 0.5 - x * (1.0 / 24.0 - x / 720.0) : (1.0 - std::cos(angle)) / x;
   const double two = small ? 1.0 / 6.0 - x * (1.0 / 120.0 - x / 5040.0) : (angle - std::sin(angle)) / (x * angle);
   const Eigen::Matrix3d by = skew(phi);
   return Eigen::Matrix3d::Identity() - one * by + two * by * by;
-}
-
-Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& phi) {
-  const double x = phi.squaredNorm(), half = 0.5 * std::sqrt(x);
-  const double two = x < kSmallTurn2 ? 1.0 / 12.0 + x * (1.0 / 720.0 + x / 30240.0) : (1.0 - half / std::tan(half)) / x;
-  const Eigen::Matrix3d by = skew(phi);
-  return Eigen::Matrix3d::Identity() + 0.5 * by + two * by * by;
 }
 
 double wrap_angle(double angle) {

@@ -29,9 +29,8 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 [[nodiscard]] Eigen::Vector3d rotation_vector_from_quaternion(const Eigen::Quaterniond& q);
 
 /// Turn in B [rad] that a small change of a rotation vector makes: exp(phi + d) = exp(phi) exp(J d) (Sola et al. 2018,
-/// eq. 143); and its inverse, for vectors shorter than a turn.
+/// eq. 143).
 [[nodiscard]] Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& phi);
-[[nodiscard]] Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& phi);
 
 /// Angle folded into (-pi, pi].
 [[nodiscard]] double wrap_angle(double angle);

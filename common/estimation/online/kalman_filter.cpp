@@ -47,9 +47,9 @@ Transition::Transition(const model::KinematicPoint& from, double step, Kinematic
     angles_turn = right_jacobian(turn);
     return;
   }
-  angles_turn = from.angles_from_turn;
   const Eigen::Vector3d euler = from.group(at::kAngles);
   const double sr = std::sin(euler.x()), cr = std::cos(euler.x()), cp = std::cos(euler.y()), tp = std::tan(euler.y());
+  angles_turn << 1.0, sr * tp, cr * tp, 0.0, cr, -sr, 0.0, sr / cp, cr / cp;
   const double across = sr * turn.y() + cr * turn.z(), along = cr * turn.y() - sr * turn.z();
   angles_angles << 1.0 + along * tp, across / (cp * cp), 0.0,  //
       -across, 1.0, 0.0,                                       //

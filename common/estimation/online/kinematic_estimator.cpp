@@ -65,6 +65,7 @@ void KinematicEstimator<N>::advance(Utime utime, FilterRecord<N>* record) {
   while (left > 0.0) {
     const double dt = left > kLongestStep ? std::min(kLongestStep, 0.5 * left) : left;
     filter_.predict(dt, settings_->process, settings_->model);
+    oriented_ = oriented_ && filter_.tells_attitude();
     left -= dt;
     if (left > 0.0 && record != nullptr) record->add(true, filter_);
     open_ = true;

@@ -223,7 +223,8 @@ KalmanSettings noise_from_rest(const Recording& recording, KalmanSettings settin
   }
   const auto first = std::find_if(recording.ahrs.begin(), recording.ahrs.end(),
                                   [&](const Ahrs& one) { return one.has_attitude && one.utime >= rest->from; });
-  if (first != recording.ahrs.end() && settings.attitude_memory == 0.0) {  // seconds of rest see no wandering
+  const bool wanders = settings.attitude_memory > 0.0;  // which seconds of rest do not show
+  if (first != recording.ahrs.end() && !wanders) {
     const auto heading = [&](const Ahrs& one) -> std::optional<double> {
       if (!one.has_attitude) return std::nullopt;
       return rotation_vector_from_quaternion(first->q_WB.conjugate() * one.q_WB).z();
@@ -247,13 +248,14 @@ KalmanSettings noise_from_rest(const Recording& recording, KalmanSettings settin
   if (count > 0) settings.range_noise = std::sqrt(square / count);
   const auto log = [](const Dvl& one) { return one.valid && !one.held ? std::optional{one.v_WB_B.x()} : std::nullopt; };
   set(settings.velocity_noise, spread(recording.dvl, *rest, log));
-  char text[200];
+  char text[240];
   std::snprintf(
       text, sizeof text,
-      ": noises from %.1f s of rest: accelerometer %.3g m/s^2, gyro %.3g rad/s, heading %.3g rad, depth %.3g m, "
+      ": noises from %.1f s of rest: accelerometer %.3g m/s^2, gyro %.3g rad/s, heading %.3g rad%s, depth %.3g m, "
       "range %.3g m",
       seconds_between(rest->from, rest->to), settings.accelerometer_noise.mean(), settings.gyro_noise.mean(),
-      settings.heading_noise.value_or(settings.attitude_noise), settings.depth_noise, settings.range_noise);
+      settings.heading_noise.value_or(settings.attitude_noise), wanders ? " (as stated: it wanders)" : "",
+      settings.depth_noise, settings.range_noise);
   notes.push_back(recording.name + text);
   return settings;
 }

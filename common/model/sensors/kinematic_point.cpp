@@ -10,7 +10,6 @@ KinematicPoint::KinematicPoint(const KinematicVector& state, const std::optional
   if (reference) {
     R_WB = *reference * quaternion_from_rotation_vector(angles).toRotationMatrix();
     turn_from_angles = right_jacobian(angles);
-    angles_from_turn = inverse_right_jacobian(angles);
   } else {
     const double sr = std::sin(angles.x()), cr = std::cos(angles.x());
     const double sp = std::sin(angles.y()), cp = std::cos(angles.y());
@@ -18,7 +17,6 @@ KinematicPoint::KinematicPoint(const KinematicVector& state, const std::optional
     R_WB << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,  //
         sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,      //
         -sp, cp * sr, cp * cr;
-    angles_from_turn << 1.0, sr * sp / cp, cr * sp / cp, 0.0, cr, -sr, 0.0, sr / cp, cr / cp;
     turn_from_angles << 1.0, 0.0, -sp, 0.0, cr, sr * cp, 0.0, -sr, cr * cp;
   }
   down_B = R_WB.row(2).transpose();

@@ -60,9 +60,8 @@ struct KinematicPoint {
 
   KinematicVector x;
   Eigen::Matrix3d R_WB;
-  Eigen::Matrix3d angles_from_turn;  ///< small changes of the three numbers by small turns in B; of roll, pitch, yaw:
-                                     ///< Fossen 2011, eq. 2.28
-  Eigen::Matrix3d turn_from_angles;  ///< its inverse
+  Eigen::Matrix3d turn_from_angles;  ///< small turns in B by small changes of the three numbers; of roll, pitch, yaw:
+                                     ///< inverse of Fossen 2011, eq. 2.28
   Eigen::Vector3d down_B;            ///< R_WB^T e_z
 
   [[nodiscard]] Eigen::Vector3d group(int begin) const { return x.segment<3>(begin); }

@@ -180,7 +180,7 @@ TEST_CASE("conventions: both papers say the same in these words") {
           KinematicVector x = KinematicVector::Zero();
           x[at::kAngles + 1] = 0.3;
           // Level in roll, bow up: turning about the body's down axis turns the heading faster than itself.
-          CHECK(KinematicPoint{x}.angles_from_turn(2, 2) == doctest::Approx(1.0 / std::cos(0.3)));
+          CHECK(KinematicPoint{x}.turn_from_angles.inverse()(2, 2) == doctest::Approx(1.0 / std::cos(0.3)));
         }},
        {"`m_X` = m - X_udot, positive", check_masses},
        {"drag derivatives that dissipate are negative",
