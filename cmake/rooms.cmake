@@ -68,6 +68,10 @@ set(FATHOM_FAST_ROOMS model identification joint)  # nearly all of a diagnosis i
 set(FATHOM_FILTER_ROOMS likelihood inference)  # at -O3 fixed-size products take minutes to compile and run no faster
 set(FATHOM_FAST_OPTIONS)
 set(FATHOM_FILTER_OPTIONS)
+if(FATHOM_SANITIZE)  # at the -O1 of the rest whole diagnoses would take the suite many hours
+  set(FATHOM_FAST_OPTIONS -O2)
+  set(FATHOM_FILTER_OPTIONS -O2)
+endif()
 if(NOT FATHOM_SANITIZE AND NOT FATHOM_FUZZ)
   set(FATHOM_FILTER_OPTIONS -fno-math-errno -fno-trapping-math)
   set(FATHOM_FAST_OPTIONS $<$<NOT:$<CONFIG:Debug>>:-O3> -fno-math-errno -fno-trapping-math

@@ -57,7 +57,7 @@ void EffectColumns::add(const model::ActiveEffect& effect, const std::vector<dou
   }
 }
 
-void EffectColumns::at(std::size_t block, likelihood::RowMatrix& acceleration, likelihood::RowMatrix& shown) {
+void EffectColumns::at(std::size_t block, likelihood::ColumnsOut acceleration, likelihood::ColumnsOut shown) {
   const auto b = static_cast<Eigen::Index>(block);
   const likelihood::RunReference& reference = seen_.reference[run_];
   const likelihood::RunData& run = problem_.runs[run_];

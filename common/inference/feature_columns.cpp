@@ -17,7 +17,7 @@ FeatureColumns::FeatureColumns(const likelihood::Problem& problem, const Seen& s
   plant_.begin(problem.runs[run].start());
 }
 
-void FeatureColumns::at(std::size_t block, likelihood::RowMatrix& acceleration) {
+void FeatureColumns::at(std::size_t block, likelihood::ColumnsOut acceleration) {
   const auto b = static_cast<Eigen::Index>(block);
   plant_.at_middle(block);
   const likelihood::FeatureState state = plant_.features_at(seen_.reference[run_].nu_middle.col(b), operators_);

@@ -13,7 +13,7 @@ class FeatureColumns {
   FeatureColumns(const likelihood::Problem& problem, const Seen& seen, const likelihood::FreeForce& library,
                  std::vector<std::size_t> groups, std::size_t run);
   [[nodiscard]] std::size_t size() const { return features_.size(); }
-  void at(std::size_t block, likelihood::RowMatrix& acceleration);
+  void at(std::size_t block, likelihood::ColumnsOut acceleration);
 
  private:
   const likelihood::Problem& problem_;

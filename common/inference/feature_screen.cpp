@@ -41,7 +41,7 @@ Screen screen(const likelihood::Problem& problem, const Seen& seen, const likeli
     FeatureColumns features{problem, seen, library, groups, r};
     likelihood::respond(
         problem, seen.reference[r], r, columns, all ? std::span<const std::size_t>{} : beginnings,
-        [&](std::size_t block, likelihood::RowMatrix& acceleration, likelihood::RowMatrix&) {
+        [&](std::size_t block, likelihood::ColumnsOut acceleration, likelihood::ColumnsOut) {
           features.at(block, acceleration);
         },
         sums);

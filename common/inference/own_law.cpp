@@ -139,9 +139,9 @@ Modulation modulation_of(const likelihood::Problem& problem, const Seen& seen, c
   for (std::size_t r = 0; r < problem.runs.size(); ++r) {
     likelihood::respond(
         problem, seen.reference[r], r, columns, {},
-        [&](std::size_t block, likelihood::RowMatrix& acceleration, likelihood::RowMatrix&) {
+        [&](std::size_t block, likelihood::ColumnsOut acceleration, likelihood::ColumnsOut) {
           const auto b = static_cast<Eigen::Index>(block);
-          acceleration = tables[r].acceleration.col(b) * tables[r].by.col(b).transpose();
+          acceleration.noalias() = tables[r].acceleration.col(b) * tables[r].by.col(b).transpose();
         },
         sums);
   }

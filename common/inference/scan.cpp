@@ -125,7 +125,7 @@ class Scanner {
       }
       likelihood::respond(
           problem_, seen_.reference[r], r, columns.size(), all ? std::span<const std::size_t>{} : groups,
-          [&](std::size_t block, likelihood::RowMatrix& acceleration, likelihood::RowMatrix& shown) {
+          [&](std::size_t block, likelihood::ColumnsOut acceleration, likelihood::ColumnsOut shown) {
             columns.at(block, acceleration, shown);
           },
           sums);

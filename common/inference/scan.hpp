@@ -61,7 +61,7 @@ class EffectColumns {
   /// Columns to come; all must be added before the first block. `theta`: the effect's numbers of the column.
   void add(const model::ActiveEffect& effect, const std::vector<double>& theta);
   [[nodiscard]] std::size_t size() const { return columns_.size(); }
-  void at(std::size_t block, likelihood::RowMatrix& acceleration, likelihood::RowMatrix& shown);
+  void at(std::size_t block, likelihood::ColumnsOut acceleration, likelihood::ColumnsOut shown);
 
  private:
   struct Column {

@@ -66,7 +66,7 @@ void score(const Problem& problem, const inference::Seen& seen, const std::vecto
       inference::FeatureColumns source{problem, seen, library, groups, r};
       likelihood::respond(
           problem, seen.reference[r], r, library.features.size(), beginnings,
-          [&](std::size_t block, likelihood::RowMatrix& acceleration, likelihood::RowMatrix&) {
+          [&](std::size_t block, likelihood::ColumnsOut acceleration, likelihood::ColumnsOut) {
             source.at(block, acceleration);
           },
           sums);

@@ -11,9 +11,10 @@ namespace fathom::likelihood {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Columns at one block: `acceleration` (axes x columns) and, where sensors are altered, `shown`: change of what is
-/// measured.
-using ColumnSource = std::function<void(std::size_t block, RowMatrix& acceleration, RowMatrix& shown)>;
+/// axes x columns, to be filled: a view that nobody can give another size.
+using ColumnsOut = Eigen::Ref<RowMatrix>;
+/// Columns at one block: `acceleration` and, where sensors are altered, `shown`: change of what is measured.
+using ColumnSource = std::function<void(std::size_t block, ColumnsOut acceleration, ColumnsOut shown)>;
 
 /// Sums over blocks, weighted as the tails' density weighs them. W: whitened responses.
 struct ResponseSums {

@@ -23,10 +23,10 @@ class ResponseState {
         added_{nu_},
         whitened_{nu_} {}
 
-  /// N x columns and more: in this block, m/s^2 or rad/s^2 per unit of the number.
-  Wide& acceleration() { return acceleration_; }
+  /// N x columns, a view: in this block, m/s^2 or rad/s^2 per unit of the number.
+  [[nodiscard]] auto acceleration() { return acceleration_.leftCols(columns_); }
   /// What a number changes in what sensors show; zero unless somebody fills it.
-  Wide& added() { return added_; }
+  [[nodiscard]] auto added() { return added_.leftCols(columns_); }
   void step(const ResponseStep<N>& step) {
     advance(step, {acceleration_.data(), added_.data(), nu_.data(), d_.data(), c_.data(), whitened_.data(), padded()});
   }

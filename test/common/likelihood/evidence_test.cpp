@@ -97,7 +97,7 @@ TEST_CASE("response: the score of a column is its inner product with the adjoint
   ResponseSums sums;
   respond(
       problem, reference[0], 0, 1, {},
-      [&](std::size_t block, RowMatrix& acceleration, RowMatrix&) {
+      [&](std::size_t block, ColumnsOut acceleration, ColumnsOut) {
         for (int i = 0; i < acceleration.rows(); ++i)
           acceleration(i, 0) = i < problem.simulated ? column(block, i) : 0.0;
       },
@@ -107,4 +107,16 @@ TEST_CASE("response: the score of a column is its inner product with the adjoint
     for (int i = 0; i < problem.simulated; ++i) product += slope(i, b) * column(static_cast<std::size_t>(b), i);
   }
   CHECK(sums.gradient[0] == doctest::Approx(product).epsilon(1e-9));
+  // Columns that are no whole lanes, told as one product.
+  const Eigen::RowVectorXd share = Eigen::RowVectorXd::LinSpaced(5, 1.0, 3.0);
+  ResponseSums shares;
+  respond(
+      problem, reference[0], 0, 5, {},
+      [&](std::size_t block, ColumnsOut acceleration, ColumnsOut) {
+        Eigen::VectorXd force = Eigen::VectorXd::Zero(acceleration.rows());
+        for (int i = 0; i < problem.simulated; ++i) force[i] = column(block, i);
+        acceleration = force * share;
+      },
+      shares);
+  for (Eigen::Index j = 0; j < 5; ++j) CHECK(shares.gradient[j] == doctest::Approx(share[j] * product).epsilon(1e-9));
 }
