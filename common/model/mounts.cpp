@@ -7,6 +7,7 @@
 #include "common/base/config.hpp"
 #include "common/base/spatial.hpp"
 #include "common/model/priors/bounded.hpp"
+#include "common/model/sensors/kinematic_point.hpp"
 
 namespace fathom::model {
 namespace {
@@ -31,6 +32,21 @@ CameraMount camera_mount(const Config& config) {
   camera.height = camera.lens.height;
   camera.focal = camera.lens.focal();
   return camera;
+}
+
+void add_singles(const Config& config, const char* key, SingleInertialMount::Measures measures,
+                 std::vector<SingleInertialMount>& singles) {
+  if (!config.has(key)) return;
+  for (const Config& one : config.list(key)) {
+    SingleInertialMount single{.measures = measures, .signal = one.text("signal"), .axis_B = axis(one, "axis")};
+    if (measures == SingleInertialMount::Measures::kForce) single.p_BS = bounded::vector3(one, "position", "m");
+    if (std::ranges::find(singles, single.signal, &SingleInertialMount::signal) != singles.end())
+      one.fail("signal", "two instruments are told as '" + single.signal + "'");
+    if (singles.size() == kMostSingles)  // each has a bias in the Kalman filter's state
+      one.fail("signal", "there are more than " + std::to_string(kMostSingles) +
+                             " accelerometers and gyros beside the inertial package; leave some out");
+    singles.push_back(std::move(single));
+  }
 }
 
 }  // namespace
@@ -71,6 +87,8 @@ Mounts Mounts::from(const Config& config) {
       mounts.loads.push_back({.name = one.text("name"), .axis_B = axis(one, "axis"), .of = one.text("of")});
     }
   }
+  add_singles(config, "accelerometers", SingleInertialMount::Measures::kForce, mounts.singles);
+  add_singles(config, "gyros", SingleInertialMount::Measures::kRate, mounts.singles);
   return mounts;
 }
 

@@ -50,13 +50,25 @@ struct LoadCellMount {
   std::string of;                                    ///< "tether", or the name of a thruster
 };
 
+/// One accelerometer or gyro that stands beside the inertial package, told as a column of the recording (SIGNAL).
+struct SingleInertialMount {
+  enum class Measures { kForce, kRate };
+  Measures measures{Measures::kForce};
+  std::string signal;                                ///< the column's name
+  Eigen::Vector3d p_BS{Eigen::Vector3d::Zero()};     ///< m; where a gyro sits does not matter
+  Eigen::Vector3d axis_B{Eigen::Vector3d::UnitX()};  ///< unit: its direction cosines
+  /// SI, of what it tells.
+  [[nodiscard]] const char* unit() const { return measures == Measures::kForce ? "m/s^2" : "rad/s"; }
+};
+
 /// Nothing, or an empty list: the vehicle does not carry the instrument.
 struct Mounts {
   std::optional<Mount> ahrs, usbl, depth, ranges;  ///< usbl and ranges: the transducer on the vehicle
   std::optional<DvlMount> dvl;
   std::vector<CameraMount> cameras;
   std::optional<LaserMount> laser;
-  std::vector<LoadCellMount> loads;  ///< order of LOADS
+  std::vector<LoadCellMount> loads;          ///< order of LOADS
+  std::vector<SingleInertialMount> singles;  ///< `accelerometers` and then `gyros`
 
   /// The section `sensors` of a vehicle file.
   [[nodiscard]] static Mounts from(const Config& config);

@@ -29,6 +29,7 @@ void spoil(PoseCapture& s) { s.p_WB.setConstant(kNan); }
 void spoil(TagPose& s) { s.p_CT.setConstant(kNan); }
 void spoil(OpticalFlow& s) { s.flow_C.setConstant(kNan); }
 void spoil(LaserRange& s) { s.p_CL.setConstant(kNan); }
+void spoil(Signal& s) { s.value = kNan; }
 void spoil(Exposure& s) { s.p_WC.setConstant(kNan); }
 void spoil(Truth&) {}
 

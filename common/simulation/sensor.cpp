@@ -47,6 +47,8 @@ const std::vector<SensorKind>& sensor_kinds() {
                                               {"battery", make_battery},
                                               {"loads", make_loads},
                                               {"ahrs", make_ahrs},
+                                              {"accelerometers", make_accelerometers},
+                                              {"gyros", make_gyros},
                                               {"dvl", make_dvl},
                                               {"depth", make_depth},
                                               {"usbl", make_usbl},

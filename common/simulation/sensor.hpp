@@ -30,7 +30,7 @@ struct Exposure {
 };
 
 using Sample = std::variant<Thrusters, Battery, Loads, Ahrs, Dvl, Depth, Usbl, Ranges, PoseCapture, TagPose,
-                            OpticalFlow, LaserRange, Truth, Exposure>;
+                            OpticalFlow, LaserRange, Signal, Truth, Exposure>;
 
 /// The truth at one instant.
 struct Moment {
@@ -121,11 +121,13 @@ struct SensorKind {
 };
 [[nodiscard]] const std::vector<SensorKind>& sensor_kinds();
 
+[[nodiscard]] std::unique_ptr<Sensor> make_accelerometers(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_ahrs(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_battery(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_camera(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_depth(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_dvl(const Config&, const Surroundings&);
+[[nodiscard]] std::unique_ptr<Sensor> make_gyros(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_laser_range(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_loads(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_optical_flow(const Config&, const Surroundings&);

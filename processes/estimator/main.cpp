@@ -9,6 +9,7 @@
 #include <fathom_lcm/optical_flow_t.hpp>
 #include <fathom_lcm/pose_capture_t.hpp>
 #include <fathom_lcm/ranges_t.hpp>
+#include <fathom_lcm/signal_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/tag_pose_t.hpp>
 #include <fathom_lcm/usbl_t.hpp>
@@ -108,6 +109,7 @@ void run_recorded(runtime::Process& process, const Config& config) {
   ignore<fathom_lcm::optical_flow_t>(process, wire::kOpticalFlow);
   ignore<fathom_lcm::laser_range_t>(process, wire::kLaserRange);
   ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
+  ignore<fathom_lcm::signal_t>(process, wire::kSignal);
   process.on_restart([&] { estimator.reset(); });
   process.on_end([&] {
     for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));
@@ -131,6 +133,7 @@ void run_trial(runtime::Process& process, const Config& config) {
   hear_aid<fathom_lcm::depth_t>(trial, wire::kDepth);
   ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
   ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
+  ignore<fathom_lcm::signal_t>(process, wire::kSignal);
   process.on_health([&]() -> runtime::Process::Condition {
     const std::string complaint = navigator.complaint();
     std::string detail = complaint.empty() ? navigator.remark() : "";
@@ -165,6 +168,7 @@ void run_kalman(runtime::Process& process, const Config& config) {
   hear<fathom_lcm::tag_pose_t>(process, estimator, wire::kTagPose);
   hear<fathom_lcm::optical_flow_t>(process, estimator, wire::kOpticalFlow);
   hear<fathom_lcm::laser_range_t>(process, estimator, wire::kLaserRange);
+  hear<fathom_lcm::signal_t>(process, estimator, wire::kSignal);
   process.on_restart([&] { estimator.reset(); });
   process.on_end([&] {
     for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));

@@ -39,7 +39,7 @@ double refused_share(const estimation::InnovationStatistics& one) {
   return all > 0.0 ? refused / all : 0.0;
 }
 
-void print(const estimation::SmoothedTrial& trial) {
+void print(const estimation::SmoothedTrial& trial, const std::vector<estimation::SingleInertial>& singles) {
   std::printf("%-18s %9s %9s %9s %8s\n", "instrument", "used", "refused", "not heard", "NIS");
   for (const estimation::InnovationStatistics& one : trial.statistics) {
     if (one.used + one.refused + one.dropped == 0) continue;
@@ -67,8 +67,13 @@ void print(const estimation::SmoothedTrial& trial) {
   if (count > 0.0)
     std::printf(", after that %.1f %.1f %.1f cm on average", 100 * sum.x() / count, 100 * sum.y() / count,
                 100 * sum.z() / count);
-  std::printf("\nbiases: accelerometer %.4f %.4f %.4f m/s^2, gyro %.5f %.5f %.5f rad/s\n", trial.biases[18],
+  std::printf("\nbiases: accelerometer %.4f %.4f %.4f m/s^2, gyro %.5f %.5f %.5f rad/s", trial.biases[18],
               trial.biases[19], trial.biases[20], trial.biases[21], trial.biases[22], trial.biases[23]);
+  for (std::size_t i = 0; i < singles.size(); ++i) {
+    std::printf(", %s %.4f %s", singles[i].mount.signal.c_str(),
+                trial.biases[model::at::kSingleBias + static_cast<Eigen::Index>(i)], singles[i].mount.unit());
+  }
+  std::printf("\n");
 }
 
 StateEstimate estimate_of(const SmoothedState& smoothed) {
@@ -175,9 +180,11 @@ void run_smooth(const SmoothOptions& options) {
   tell();
   estimation::SmoothedTrial trial;
   bool attitude_used = false;
+  std::vector<estimation::SingleInertial> singles;
   try {
     auto found = reconstructed(recording, files, asked, notes, line->progress());
     attitude_used = found.settings.attitude == estimation::AttitudeUse::kEverything;
+    singles = found.settings.singles;
     trial = std::move(found.trial);
   } catch (const InputError&) {
     tell();
@@ -185,7 +192,7 @@ void run_smooth(const SmoothOptions& options) {
   }
   tell();
   line.reset();
-  print(trial);
+  print(trial, singles);
   recording.state.clear();
   recording.smoothed = std::move(trial.smoothed);
   const auto events = write(recording, options.out);

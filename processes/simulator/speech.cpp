@@ -10,6 +10,7 @@
 #include <fathom_lcm/optical_flow_t.hpp>
 #include <fathom_lcm/pose_capture_t.hpp>
 #include <fathom_lcm/ranges_t.hpp>
+#include <fathom_lcm/signal_t.hpp>
 #include <fathom_lcm/tag_pose_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
 #include <fathom_lcm/truth_t.hpp>
@@ -34,6 +35,7 @@ const char* channel_of(const PoseCapture&) { return wire::kPoseCapture; }
 const char* channel_of(const TagPose&) { return wire::kTagPose; }
 const char* channel_of(const OpticalFlow&) { return wire::kOpticalFlow; }
 const char* channel_of(const LaserRange&) { return wire::kLaserRange; }
+const char* channel_of(const Signal&) { return wire::kSignal; }
 const char* channel_of(const simulation::Exposure&) { return wire::kCamera; }
 const char* channel_of(const Truth&) { return wire::kTruth; }
 
@@ -52,6 +54,7 @@ void declare_speech(runtime::Process& process) {
   process.publishes<fathom_lcm::tag_pose_t>(wire::kTagPose);
   process.publishes<fathom_lcm::optical_flow_t>(wire::kOpticalFlow);
   process.publishes<fathom_lcm::laser_range_t>(wire::kLaserRange);
+  process.publishes<fathom_lcm::signal_t>(wire::kSignal);
   process.publishes<fathom_lcm::camera_t>(wire::kCamera);
   process.publishes<fathom_lcm::truth_t>(wire::kTruth);
 }

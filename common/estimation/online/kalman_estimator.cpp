@@ -19,6 +19,8 @@ KalmanEstimator::Machine KalmanEstimator::machine() const {
   switch (settings_.states()) {
     case model::kMostStates:
       return KinematicEstimator<model::kMostStates>{settings_};
+    case model::kLoggedStates:
+      return KinematicEstimator<model::kLoggedStates>{settings_};
     case model::kInertialStates:
       return KinematicEstimator<model::kInertialStates>{settings_};
     default:
@@ -77,6 +79,7 @@ void KalmanEstimator::release(Utime until) {
 bool KalmanEstimator::used(const Sample& sample) const {
   if (holds<OpticalFlow>(sample)) return settings_.flow && settings_.floor;
   if (holds<LaserRange>(sample)) return settings_.laser && settings_.floor;
+  if (const auto* signal = std::get_if<Signal>(&sample)) return settings_.single(signal->name).has_value();
   return true;
 }
 

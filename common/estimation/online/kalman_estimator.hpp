@@ -33,6 +33,8 @@ class KalmanEstimator {
   /// Flow and laser need a floor in the settings; without one they are not used.
   const Output& step(const OpticalFlow& sample) { return wait({sample.utime, sample}); }
   const Output& step(const LaserRange& sample) { return wait({sample.utime, sample}); }
+  /// Columns that no instrument of the settings tells are not used.
+  const Output& step(const Signal& sample) { return wait({sample.utime, sample}); }
   /// The input has ended: everything that waits.
   const Output& finish();
   /// A log started over.
@@ -42,13 +44,13 @@ class KalmanEstimator {
   [[nodiscard]] std::map<std::string, std::int64_t> rejected() const;
 
  private:
-  using Sample = std::variant<Ahrs, PoseCapture, Dvl, Depth, Usbl, Ranges, TagPose, OpticalFlow, LaserRange>;
+  using Sample = std::variant<Ahrs, PoseCapture, Dvl, Depth, Usbl, Ranges, TagPose, OpticalFlow, LaserRange, Signal>;
   struct Event {
     Utime utime{};
     Sample sample;
   };
   using Machine = std::variant<KinematicEstimator<model::kKinematicStates>, KinematicEstimator<model::kInertialStates>,
-                               KinematicEstimator<model::kMostStates>>;
+                               KinematicEstimator<model::kLoggedStates>, KinematicEstimator<model::kMostStates>>;
 
   const Output& wait(Event event);
   void release(Utime until);

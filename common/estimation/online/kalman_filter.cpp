@@ -206,6 +206,10 @@ void KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, KinematicMod
   }
   if constexpr (N > model::kInertialStates)
     P_.diagonal().template segment<3>(at::kLogBias).array() += square(noise.log_bias) * dt;
+  if constexpr (N > model::kLoggedStates) {
+    for (std::size_t i = 0; i < noise.single_bias.size(); ++i)
+      P_.diagonal()[at::kSingleBias + static_cast<Eigen::Index>(i)] += square(noise.single_bias[i]) * dt;
+  }
   mirror<N>(P_);
   transition_ = F;
 }
@@ -247,12 +251,15 @@ typename KalmanFilter<N>::Outcome KalmanFilter<N>::update(const model::Observati
 
 template class KalmanFilter<model::kKinematicStates>;
 template class KalmanFilter<model::kInertialStates>;
+template class KalmanFilter<model::kLoggedStates>;
 template class KalmanFilter<model::kMostStates>;
 template void transport_back<model::kKinematicStates>(const Transition&, Eigen::Matrix<double, 18, 18>&);
 template void transport_back<model::kInertialStates>(const Transition&, Eigen::Matrix<double, 24, 24>&);
-template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 27, 27>&);
+template void transport_back<model::kLoggedStates>(const Transition&, Eigen::Matrix<double, 27, 27>&);
+template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 36, 36>&);
 template void transport_back<model::kKinematicStates>(const Transition&, Eigen::Matrix<double, 18, 1>&);
 template void transport_back<model::kInertialStates>(const Transition&, Eigen::Matrix<double, 24, 1>&);
-template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 27, 1>&);
+template void transport_back<model::kLoggedStates>(const Transition&, Eigen::Matrix<double, 27, 1>&);
+template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 36, 1>&);
 
 }  // namespace fathom::estimation

@@ -5,6 +5,7 @@
 // N x N.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "common/model/sensors/kinematic_point.hpp"
@@ -23,6 +24,8 @@ struct ProcessNoise {
   double accelerometer_bias{1e-4};  ///< m/s^2: moves the first three biases
   double gyro_bias{1e-5};           ///< rad/s: moves the next three
   double log_bias{1e-5};            ///< m/s: moves those of a velocity log
+  /// m/s^2, rad/s: move those of accelerometers and gyros beside the package, in their order.
+  std::array<double, model::kMostSingles> single_bias{};
 };
 
 /// What a step does to small errors: the model's derivative at a point. Kept so that a smoother can go back.
@@ -39,7 +42,8 @@ struct Transition {
   Eigen::Matrix3d angles_angles;  ///< d(new angles)/d(angles)
 };
 
-/// N is 18, 24 with the biases of accelerometers and gyros, or 27 with those of a velocity log as well.
+/// N is 18, 24 with the biases of accelerometers and gyros, 27 with those of a velocity log, or 36 with those of
+/// accelerometers and gyros beside the inertial package as well.
 template <int N>
 class KalmanFilter {
  public:
@@ -104,6 +108,7 @@ void transport_back(const Transition& F, Eigen::Matrix<double, N, 1>& l);
 
 extern template class KalmanFilter<model::kKinematicStates>;
 extern template class KalmanFilter<model::kInertialStates>;
+extern template class KalmanFilter<model::kLoggedStates>;
 extern template class KalmanFilter<model::kMostStates>;
 
 }  // namespace fathom::estimation

@@ -88,6 +88,21 @@ void read_start(const Config& config, KalmanSettings& s) {
 
 }  // namespace
 
+void KalmanSettings::add_singles(const std::vector<model::SingleInertialMount>& mounts) {
+  for (const model::SingleInertialMount& mount : mounts) {
+    const bool force = mount.measures == model::SingleInertialMount::Measures::kForce;
+    process.single_bias[singles.size()] = force ? process.accelerometer_bias : process.gyro_bias;
+    singles.push_back({mount, std::nullopt});
+  }
+}
+
+std::optional<std::size_t> KalmanSettings::single(const std::string& signal) const {
+  for (std::size_t i = 0; i < singles.size(); ++i) {
+    if (singles[i].mount.signal == signal) return i;
+  }
+  return std::nullopt;
+}
+
 KalmanSettings KalmanSettings::from(const Config& config) {
   KalmanSettings s;
   if (config.has("filter")) static_cast<void>(config.text("filter"));  // whoever calls has chosen by it

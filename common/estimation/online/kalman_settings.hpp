@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/estimation/online/kalman_filter.hpp"
+#include "common/model/mounts.hpp"
 #include "common/model/sensors/tag_pose.hpp"
 
 namespace fathom {
@@ -36,6 +37,12 @@ struct KnownCamera {
   model::Pose X_BC;
 };
 
+/// An accelerometer or gyro beside the inertial package.
+struct SingleInertial {
+  model::SingleInertialMount mount;
+  std::optional<double> noise;  ///< m/s^2 or rad/s of one sample; else the mean of the package's
+};
+
 struct KalmanSettings {
   KinematicModel model{KinematicModel::kCoupled};
   ProcessNoise process;
@@ -51,6 +58,7 @@ struct KalmanSettings {
   Eigen::Vector3d gyro_noise{Eigen::Vector3d::Constant(0.005)};          ///< rad/s of one sample, per axis
   double accelerometer_bias{0.05};                                       ///< m/s^2, prior
   double gyro_bias{0.005};                                               ///< rad/s, prior
+  std::vector<SingleInertial> singles;  ///< kMostSingles at most; they are as noisy and biased as the package
 
   AttitudeUse attitude{AttitudeUse::kEverything};
   static constexpr double kHeadingNoise = 0.02;  ///< rad
@@ -100,11 +108,17 @@ struct KalmanSettings {
   double start_rates{0.2};               ///< rad/s
   double start_acceleration{0.2};        ///< m/s^2; the rates' derivatives the same in rad/s^2
 
-  /// How many states its filter has: 18, 24 or 27.
+  /// How many states its filter has: 18, 24, 27 or 36.
   [[nodiscard]] int states() const {
-    if (velocity_bias > 0.0) return model::kMostStates;
+    if (!singles.empty()) return model::kMostStates;
+    if (velocity_bias > 0.0) return model::kLoggedStates;
     return biases ? model::kInertialStates : model::kKinematicStates;
   }
+
+  /// Instruments beside the inertial package, as the vehicle file has them.
+  void add_singles(const std::vector<model::SingleInertialMount>& mounts);
+  /// The one that a column of that name tells, or none.
+  [[nodiscard]] std::optional<std::size_t> single(const std::string& signal) const;
 
   /// Reads the section "estimator" of a file whose `filter` is `ekf`. Every key may be left out; docs/configuration.md.
   [[nodiscard]] static KalmanSettings from(const Config& config);

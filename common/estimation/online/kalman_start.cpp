@@ -152,6 +152,10 @@ std::optional<KalmanStart> StartFinder::found() const {
   start.sigma.segment<3>(at::kBias).setConstant(s.accelerometer_bias);
   start.sigma.segment<3>(at::kBias + 3).setConstant(s.gyro_bias);
   start.sigma.segment<3>(at::kLogBias).setConstant(s.velocity_bias);
+  for (std::size_t i = 0; i < s.singles.size(); ++i) {
+    const bool force = s.singles[i].mount.measures == model::SingleInertialMount::Measures::kForce;
+    start.sigma[at::kSingleBias + static_cast<Eigen::Index>(i)] = force ? s.accelerometer_bias : s.gyro_bias;
+  }
   return start;
 }
 

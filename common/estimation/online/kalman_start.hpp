@@ -14,7 +14,7 @@ namespace fathom::estimation {
 
 /// A sample of any instrument, not owned.
 using SampleView = std::variant<const Ahrs*, const PoseCapture*, const Dvl*, const Depth*, const Usbl*, const Ranges*,
-                                const TagPose*, const OpticalFlow*, const LaserRange*>;
+                                const TagPose*, const OpticalFlow*, const LaserRange*, const Signal*>;
 
 struct KalmanStart {
   model::KinematicVector x{model::KinematicVector::Zero()};
@@ -61,6 +61,7 @@ class StartFinder {
   void use(const TagPose& sample);
   void use(const OpticalFlow&) {}
   void use(const LaserRange&) {}
+  void use(const Signal&) {}
 
   const KalmanSettings* settings_;
   bool awaited_;

@@ -38,6 +38,7 @@ template <int N>
 KinematicEstimator<N>::KinematicEstimator(const KalmanSettings& settings) : settings_{&settings} {
   for (const char* name : kNames) statistics_.push_back({.name = name});
   for (const Transponder& one : settings.transponders) statistics_.push_back({.name = "range " + one.name});
+  for (const SingleInertial& one : settings.singles) statistics_.push_back({.name = one.mount.signal});
   in_a_row_.assign(statistics_.size(), 0);
   ranges_.assign(settings.transponders.size(), 0.0);
 }
@@ -110,7 +111,7 @@ void KinematicEstimator<N>::doubt(std::size_t instrument) {
 template <int N>
 void KinematicEstimator<N>::doubt_if_lost() {
   std::size_t lost = 0, used = 0;
-  for (std::size_t i = kFirstRange; i < in_a_row_.size(); ++i) {
+  for (std::size_t i = kFirstRange; i < first_single(); ++i) {
     used += settings_->transponders[i - kFirstRange].used ? 1 : 0;
     lost += in_a_row_[i] > kRangePatience ? 1 : 0;
   }
@@ -119,13 +120,14 @@ void KinematicEstimator<N>::doubt_if_lost() {
   sigma.template segment<3>(at::kPosition).setConstant(settings_->start_position);
   sigma.template segment<3>(at::kVelocity).setConstant(settings_->start_velocity);
   filter_.doubt(sigma);
-  std::fill(in_a_row_.begin() + kFirstRange, in_a_row_.end(), 0);
+  std::fill_n(in_a_row_.begin() + kFirstRange, settings_->transponders.size(), 0);
 }
 
 template <int N>
 void KinematicEstimator<N>::apply(std::size_t instrument, const model::Observation& observation) {
   InnovationStatistics& statistics = statistics_[instrument];
-  const bool inertial = instrument == kAccelerometer || instrument == kGyro;  // they err by noise, not by leaps
+  // They err by noise, not by leaps.
+  const bool inertial = instrument == kAccelerometer || instrument == kGyro || instrument >= first_single();
   const double gate = inertial ? std::numeric_limits<double>::max() : settings_->gate;
   if (instrument < kFirstRange && in_a_row_[instrument] > kPatience) doubt(instrument);
   const auto outcome = filter_.update(observation, gate, moved_);
@@ -180,6 +182,26 @@ void KinematicEstimator<N>::use(const Ahrs& sample) {
     for (const auto& row : rows) apply(kAttitude, row);
     attitude_ = sample.utime;
   }
+}
+
+template <int N>
+void KinematicEstimator<N>::use(const Signal& sample) {
+  const KalmanSettings& s = *settings_;
+  const auto which = s.single(sample.name);
+  if (!which) return;
+  const model::SingleInertialMount& mount = s.singles[*which].mount;
+  if (sample.unit != mount.unit()) {
+    ++statistics_[first_single() + *which].dropped;
+    return;
+  }
+  const model::KinematicPoint point = filter_.point();
+  const int bias = at::kSingleBias - at::kBias + static_cast<int>(*which);
+  const bool force = mount.measures == model::SingleInertialMount::Measures::kForce;
+  const double noise = s.singles[*which].noise.value_or((force ? s.accelerometer_noise : s.gyro_noise).mean());
+  const model::Observation row = force ? observe(point, model::Accelerometer{mount.p_BS, mount.axis_B, bias, s.gravity},
+                                                 sample.value, square(noise))
+                                       : observe(point, model::Gyro{mount.axis_B, bias}, sample.value, square(noise));
+  apply(first_single() + *which, row);
 }
 
 template <int N>
@@ -361,6 +383,7 @@ StateEstimate state_of(Utime utime, const model::KinematicVector& x, const model
 
 template class KinematicEstimator<model::kKinematicStates>;
 template class KinematicEstimator<model::kInertialStates>;
+template class KinematicEstimator<model::kLoggedStates>;
 template class KinematicEstimator<model::kMostStates>;
 
 }  // namespace fathom::estimation

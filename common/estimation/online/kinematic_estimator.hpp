@@ -26,7 +26,7 @@ struct InnovationStatistics {
   [[nodiscard]] double nis() const { return used > 0 ? nis_sum / static_cast<double>(used) : 0.0; }
 };
 
-/// Rows in this order, and then one per transponder.
+/// Rows in this order, then one per transponder, and one per accelerometer or gyro beside the inertial package.
 enum Instrument : std::size_t {
   kAccelerometer,
   kGyro,
@@ -72,7 +72,9 @@ class KinematicEstimator {
   void use(const TagPose& sample);
   void use(const OpticalFlow& sample);
   void use(const LaserRange& sample);
+  void use(const Signal& sample);
   [[nodiscard]] const KnownCamera* camera(const std::string& name) const;
+  [[nodiscard]] std::size_t first_single() const { return kFirstRange + settings_->transponders.size(); }
   [[nodiscard]] bool within_walls(const Eigen::Vector3d& p_W) const;
   void apply(std::size_t instrument, const model::Observation& observation);
   void doubt(std::size_t instrument);
@@ -99,6 +101,7 @@ class KinematicEstimator {
 
 extern template class KinematicEstimator<model::kKinematicStates>;
 extern template class KinematicEstimator<model::kInertialStates>;
+extern template class KinematicEstimator<model::kLoggedStates>;
 extern template class KinematicEstimator<model::kMostStates>;
 
 }  // namespace fathom::estimation

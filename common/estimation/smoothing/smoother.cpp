@@ -105,12 +105,15 @@ void Smoother<N>::back_over(const FilterRecord<N>& record, const Visit& visit) {
 
 template struct FilterRecord<model::kKinematicStates>;
 template struct FilterRecord<model::kInertialStates>;
+template struct FilterRecord<model::kLoggedStates>;
 template struct FilterRecord<model::kMostStates>;
 template class Smoothed<model::kKinematicStates>;
 template class Smoothed<model::kInertialStates>;
+template class Smoothed<model::kLoggedStates>;
 template class Smoothed<model::kMostStates>;
 template class Smoother<model::kKinematicStates>;
 template class Smoother<model::kInertialStates>;
+template class Smoother<model::kLoggedStates>;
 template class Smoother<model::kMostStates>;
 
 }  // namespace fathom::estimation

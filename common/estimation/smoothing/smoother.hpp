@@ -76,12 +76,15 @@ class Smoother {
 
 extern template struct FilterRecord<model::kKinematicStates>;
 extern template struct FilterRecord<model::kInertialStates>;
+extern template struct FilterRecord<model::kLoggedStates>;
 extern template struct FilterRecord<model::kMostStates>;
 extern template class Smoothed<model::kKinematicStates>;
 extern template class Smoothed<model::kInertialStates>;
+extern template class Smoothed<model::kLoggedStates>;
 extern template class Smoothed<model::kMostStates>;
 extern template class Smoother<model::kKinematicStates>;
 extern template class Smoother<model::kInertialStates>;
+extern template class Smoother<model::kLoggedStates>;
 extern template class Smoother<model::kMostStates>;
 
 }  // namespace fathom::estimation

@@ -108,8 +108,10 @@ void refuse_against_state(const Recording& recording, const SmoothedTrial& trial
 Reconstruction reconstruct_state(const Recording& recording, const TrialFiles& files,
                                  const ReconstructionOptions& options, std::vector<std::string>& notes,
                                  const Progress& progress) {
-  auto [settings, noises_stated, process_stated, note] = instruments_of(recording, files);
+  auto [settings, noises_stated, process_stated, note, unrecorded] = instruments_of(recording, files);
   if (!note.empty()) notes.push_back(recording.name + ": " + note);
+  for (const std::string& signal : unrecorded)
+    notes.push_back(recording.name + ": the vehicle file's '" + signal + "' is no column of this recording");
   if (options.model) settings.model = *options.model;
   refuse_without_position(recording, settings, options.without_position);
   for (std::string& line : unused_instruments(recording, settings)) notes.push_back(std::move(line));

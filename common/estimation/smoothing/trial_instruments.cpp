@@ -35,6 +35,7 @@ void add_places(const TrialFiles& files, KalmanSettings& s) {
     }
     if (mounts.ahrs && s.p_BI.isZero(0.0)) s.p_BI = mounts.ahrs->p_BS;
     if (mounts.ranges && s.p_BA.isZero(0.0)) s.p_BA = mounts.ranges->p_BS;
+    if (s.singles.empty()) s.add_singles(mounts.singles);
   }
   if (files.site) {
     const model::Site& site = *files.site;
@@ -74,6 +75,34 @@ void measure_white_noises(const std::vector<Ahrs>& stream, KalmanSettings& s) {
     if (force) s.accelerometer_noise[i] = *force;
     if (rate) s.gyro_noise[i] = *rate;
   }
+}
+
+// Those beside the package: each by itself, for no file states them. One that the recording lacks costs no state.
+void measure_singles(const std::vector<Signal>& signals, KalmanSettings& s, std::vector<std::string>& unrecorded) {
+  std::vector<model::SingleInertialMount> told;
+  std::vector<std::optional<double>> noises;
+  for (const SingleInertial& one : s.singles) {
+    std::vector<double> t, series;
+    for (const Signal& sample : signals) {
+      if (sample.name != one.mount.signal) continue;
+      const double at = seconds_between(signals.front().utime, sample.utime);
+      if (!t.empty() && at <= t.back()) continue;
+      t.push_back(at);
+      series.push_back(sample.value);
+    }
+    if (series.empty()) {
+      unrecorded.push_back(one.mount.signal);
+      continue;
+    }
+    const bool force = one.mount.measures == model::SingleInertialMount::Measures::kForce;
+    told.push_back(one.mount);
+    noises.push_back(series.size() < kFewest
+                         ? std::nullopt
+                         : std::optional{std::max(white_noise_sigma(t, series), force ? kLeastForce : kLeastRate)});
+  }
+  s.singles.clear();
+  s.add_singles(told);
+  for (std::size_t i = 0; i < noises.size(); ++i) s.singles[i].noise = noises[i];
 }
 
 // The live filter's section: its cut-offs are of no use here; its noises, and what it says lasts, are.
@@ -201,6 +230,7 @@ TrialInstruments instruments_of(const Recording& recording, const TrialFiles& fi
     add_live(NavigatorSettings::from(*files.estimator), recording.ahrs, s, result.note);
     result.noises_stated = true;
   }
+  if (!s.singles.empty()) measure_singles(recording.signals, s, result.unrecorded);
   return result;
 }
 

@@ -39,6 +39,7 @@ struct TrialInstruments {
   bool noises_stated{false};   ///< by the pipeline, for a filter that knows lasting errors: no rest may replace them
   bool process_stated{false};  ///< likewise the process noise
   std::string note;            ///< what was found of them, a line; may be empty
+  std::vector<std::string> unrecorded;  ///< accelerometers and gyros of the vehicle file that the recording lacks
 };
 
 /// White noises of the inertial package are measured in the recording where no file states them. InputError when a file

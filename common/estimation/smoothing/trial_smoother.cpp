@@ -35,6 +35,15 @@ std::vector<Event> events_of(const Recording& recording, const KalmanSettings& s
   if (!settings.tags.empty()) add(recording.tag_pose);
   if (settings.floor && settings.flow) add(recording.optical_flow);
   if (settings.floor && settings.laser) add(recording.laser_range);
+  for (const Signal& one : recording.signals) {
+    const auto which = settings.singles.empty() ? std::nullopt : settings.single(one.name);
+    if (!which) continue;
+    const char* unit = settings.singles[*which].mount.unit();
+    if (one.unit != unit)
+      throw InputError(recording.name + ": column '" + one.name + "' is told in '" + one.unit + "', not in " + unit +
+                       "; state its unit in the column map, or take it out of the vehicle file's sensors");
+    events.push_back({one.utime, &one});
+  }
   std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
     return a.utime != b.utime ? a.utime < b.utime : a.sample.index() < b.sample.index();
   });
@@ -63,7 +72,8 @@ bool is_output(const std::vector<Event>& events, std::size_t first, std::size_t 
   return std::any_of(events.begin() + static_cast<std::ptrdiff_t>(first),
                      events.begin() + static_cast<std::ptrdiff_t>(last), [inertial](const Event& event) {
                        return inertial ? std::holds_alternative<const Ahrs*>(event.sample)
-                                       : !std::holds_alternative<const Depth*>(event.sample);
+                                       : !std::holds_alternative<const Depth*>(event.sample) &&
+                                             !std::holds_alternative<const Signal*>(event.sample);
                      });
 }
 
@@ -254,6 +264,8 @@ std::vector<InnovationStatistics> innovations(const Recording& recording, const 
   switch (settings.states()) {
     case model::kMostStates:
       return statistics_as<model::kMostStates>(recording, settings);
+    case model::kLoggedStates:
+      return statistics_as<model::kLoggedStates>(recording, settings);
     case model::kInertialStates:
       return statistics_as<model::kInertialStates>(recording, settings);
     default:
@@ -266,6 +278,8 @@ SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings,
   switch (settings.states()) {
     case model::kMostStates:
       return smooth_as<model::kMostStates>(recording, settings, visit, progress, keep_filtered);
+    case model::kLoggedStates:
+      return smooth_as<model::kLoggedStates>(recording, settings, visit, progress, keep_filtered);
     case model::kInertialStates:
       return smooth_as<model::kInertialStates>(recording, settings, visit, progress, keep_filtered);
     default:

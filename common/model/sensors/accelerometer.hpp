@@ -10,7 +10,7 @@ namespace fathom::model {
 struct Accelerometer {
   Eigen::Vector3d p_BI{Eigen::Vector3d::Zero()};          ///< m
   Eigen::Vector3d direction_B{Eigen::Vector3d::UnitX()};  ///< unit: its direction cosines
-  int bias{-1};                                           ///< 0..5: the bias state that it adds; -1: none
+  int bias{-1};                                           ///< the bias state that it adds, from at::kBias; -1: none
   double gravity{kGravity};                               ///< m/s^2, where it is
 };
 

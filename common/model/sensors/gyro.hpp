@@ -7,7 +7,7 @@ namespace fathom::model {
 
 struct Gyro {
   Eigen::Vector3d direction_B{Eigen::Vector3d::UnitX()};  ///< unit: its direction cosines
-  int bias{-1};                                           ///< 0..5: the bias state that it adds; -1: none
+  int bias{-1};                                           ///< the bias state that it adds, from at::kBias; -1: none
 };
 
 /// `measured` and the root of `variance` in rad/s.

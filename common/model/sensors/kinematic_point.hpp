@@ -13,7 +13,7 @@ namespace fathom::model {
 
 /// Where the groups of three begin: position and velocity in W; attitude (KinematicPoint); acceleration of Bo in W seen
 /// in B (inertial: v_dot + w x v); rates and their derivatives in B; biases of accelerometers, gyros and velocity log
-/// in B.
+/// in B; of accelerometers and gyros beside the inertial package, each along its own axis.
 namespace at {
 inline constexpr int kPosition = 0;
 inline constexpr int kVelocity = 3;
@@ -23,10 +23,13 @@ inline constexpr int kRates = 12;
 inline constexpr int kRateSlopes = 15;
 inline constexpr int kBias = 18;
 inline constexpr int kLogBias = 24;
+inline constexpr int kSingleBias = 27;
 }  // namespace at
 inline constexpr int kKinematicStates = 18;
 inline constexpr int kInertialStates = kKinematicStates + 6;          ///< with the biases of accelerometers and gyros
-inline constexpr int kMostStates = kInertialStates + 3;               ///< with that of a velocity log
+inline constexpr int kLoggedStates = kInertialStates + 3;             ///< with that of a velocity log
+inline constexpr int kMostSingles = 9;                                ///< accelerometers and gyros beside the package
+inline constexpr int kMostStates = kLoggedStates + kMostSingles;      ///< with theirs
 inline constexpr double kGravity = 9.80665;                           ///< m/s^2
 inline constexpr double kSteepest = 85.0 * std::numbers::pi / 180.0;  ///< rad, pitch beyond which roll and yaw blur
 

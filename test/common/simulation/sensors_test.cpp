@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "common/base/error.hpp"
 #include "test/support/sensor_bench.hpp"
 #include "test/support/timing.hpp"
 
@@ -48,6 +49,58 @@ TEST_CASE("ahrs: specific force at its own place, by hand") {
       std::get<Ahrs>(bench.measure(moment_at({0, 0, 0.5}, Eigen::Vector3d::Zero(), nu, nu_dot)).front());
   CHECK((sample.f_B - Eigen::Vector3d{0.1 - 0.3, 0.5 + 0.6, -9.81}).norm() < kExact);
   CHECK((sample.w_WB_B - Eigen::Vector3d{0.0, 0.0, 1.0}).norm() < kExact);
+}
+
+TEST_CASE("single accelerometers and gyros: three of each at the package's place say what it says, along their axes") {
+  const auto arm = Eigen::Vector3d{0.3, -0.2, 0.1};
+  const Eigen::Matrix3d axes = rotation_from_euler({0.4, -0.7, 1.9});
+  const auto change = [&](model::Vehicle& vehicle) {
+    vehicle.mounts.ahrs->p_BS = arm;
+    for (int i = 0; i < 3; ++i) {
+      const std::string name{static_cast<char>('a' + i)};
+      vehicle.mounts.singles.push_back({model::SingleInertialMount::Measures::kForce, name, arm, axes.col(i)});
+      vehicle.mounts.singles.push_back({model::SingleInertialMount::Measures::kRate, name + "'", {}, axes.col(i)});
+    }
+  };
+  Vector6d nu, nu_dot;
+  nu << 0.5, -0.3, 0.2, 0.4, -0.6, 1.0;
+  nu_dot << 0.1, 0.2, -0.3, 2.0, -1.0, 1.5;
+  const Moment moment = moment_at({0, 0, 0.5}, {0.2, -0.4, 1.1}, nu, nu_dot);
+  Bench package{make_ahrs, kPerfectAhrs, "tank", 1, change};
+  Bench forces{make_accelerometers, "noise: 0 m/s^2\nbias: 0 m/s^2\n", "tank", 1, change};
+  Bench rates{make_gyros, "noise: 0 rad/s\nbias: 0 rad/s\n", "tank", 1, change};
+  const auto told = std::get<Ahrs>(package.measure(moment).front());
+  const Eigen::Vector3d f = axes.transpose() * told.f_B, w = axes.transpose() * told.w_WB_B;
+  REQUIRE(forces.measure(moment).size() == 3);
+  REQUIRE(rates.measure(moment).size() == 3);
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto &force = std::get<Signal>(forces.samples[k]), &rate = std::get<Signal>(rates.samples[k]);
+    CHECK(force.name + "'" == rate.name);
+    CHECK(force.unit == "m/s^2");
+    CHECK(rate.unit == "rad/s");
+    CHECK(std::abs(force.value - f[i]) < kExact);
+    CHECK(std::abs(rate.value - w[i]) < kExact);
+  }
+}
+
+TEST_CASE("single accelerometers: noise, and a bias of each, are as stated; a vehicle without them has none") {
+  Moments noise, bias;
+  const auto one = [](model::Vehicle& vehicle) {
+    vehicle.mounts.singles.push_back(
+        {model::SingleInertialMount::Measures::kForce, "bow", {1.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()});
+  };
+  for (unsigned seed = 1; seed <= test::seeds(120); ++seed) {
+    Bench bench{make_accelerometers, "noise: 0.02 m/s^2\nbias: 0.1 m/s^2\n", "tank", seed, one};
+    const double drawn = bench.sensor->drawn().front().second;
+    bias.add(drawn);
+    for (int i = 0; i < 20; ++i)
+      noise.add(std::get<Signal>(bench.measure(moment_at({0, 0, 0.5})).front()).value + 9.81 - drawn);
+  }
+  check_sigma(noise, 0.02);
+  check_mean(noise, 0.0, 0.02);
+  check_sigma(bias, 0.1);
+  CHECK_THROWS_AS((Bench{make_accelerometers, "noise: 0 m/s^2\nbias: 0 m/s^2\n", "tank"}), InputError);
 }
 
 TEST_CASE("ahrs: magnetic heading differs by the site's declination") {

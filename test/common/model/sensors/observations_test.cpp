@@ -29,8 +29,9 @@ constexpr double kSmallTurn = 2e-3;   // a rotation vector's derivative away fro
 
 KinematicVector some_state() {
   KinematicVector x;
-  x << 3.0, 10.0, 2.0, 0.4, -0.2, 0.05, 0.1, -0.2, 1.3, 0.05, 0.1, -0.04, 0.1, -0.2, 0.3, 0.4, 0.5, -0.6, 0.02, -0.01,
-      0.03, 0.001, 0.002, -0.003, 0.004, -0.005, 0.006;
+  x.head<kLoggedStates>() << 3.0, 10.0, 2.0, 0.4, -0.2, 0.05, 0.1, -0.2, 1.3, 0.05, 0.1, -0.04, 0.1, -0.2, 0.3, 0.4,
+      0.5, -0.6, 0.02, -0.01, 0.03, 0.001, 0.002, -0.003, 0.004, -0.005, 0.006;
+  x.tail<kMostSingles>() << 0.01, -0.02, 0.03, -0.04, 0.05, -0.06, 0.001, -0.002, 0.003;
   return x;
 }
 
@@ -160,6 +161,10 @@ void check_all(const Reference& reference, bool over_a_floor) {
   const Eigen::Vector3d arm{0.3, -0.1, 0.2}, d = Eigen::Vector3d(0.6, 0.64, 0.48);
   check_row("accelerometer", reference, [&](const auto& p) { return observe(p, Accelerometer{arm, d, 1}, 0.3, 1.0); });
   check_row("gyro", reference, [&](const auto& p) { return observe(p, Gyro{d, 4}, 0.1, 1.0); });
+  constexpr int kSingle = at::kSingleBias - at::kBias + 5;
+  check_row("accelerometer beside the package", reference, [&](const auto& p) {
+    return observe(p, Accelerometer{arm, d, kSingle}, 0.3, 1.0);
+  });
   check_row("heading", reference, [&](const auto& p) { return observe_heading(p, 0.02, 1.25, 1.0); });
   check_row("depth", reference, [&](const auto& p) { return observe_depth(p, arm, 2.2, 1.0); });
   check_row("range", reference, [&](const auto& p) { return observe_range(p, arm, {20.0, -5.0, 12.0}, 22.0, 1.0); });
