@@ -91,6 +91,16 @@ void ignore(runtime::Process& process, const std::string& channel) {
   process.on<Message>(channel, wire::kDecode, [](const auto& /*sample*/) {});
 }
 
+/// A column has whosever clock: should it jump, nothing starts over.
+template <class Use>
+void hear_columns(runtime::Process& process, Use use) {
+  process.listens_to<fathom_lcm::signal_t>(wire::kSignal, [&process, use](const fathom_lcm::signal_t& message) {
+    const auto sample = wire::decode(message);
+    if (!sample) return process.reject(wire::kSignal);
+    use(*sample);
+  });
+}
+
 void tell_refused(runtime::Process& process, const std::map<std::string, std::int64_t>& rejected) {
   for (const auto& [reason, count] : rejected) {
     process.log_info(std::to_string(count) + " samples not used: " + reason);
@@ -109,7 +119,7 @@ void run_recorded(runtime::Process& process, const Config& config) {
   ignore<fathom_lcm::optical_flow_t>(process, wire::kOpticalFlow);
   ignore<fathom_lcm::laser_range_t>(process, wire::kLaserRange);
   ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
-  ignore<fathom_lcm::signal_t>(process, wire::kSignal);
+  hear_columns(process, [](const Signal& /*sample*/) {});
   process.on_restart([&] { estimator.reset(); });
   process.on_end([&] {
     for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));
@@ -133,7 +143,7 @@ void run_trial(runtime::Process& process, const Config& config) {
   hear_aid<fathom_lcm::depth_t>(trial, wire::kDepth);
   ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
   ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
-  ignore<fathom_lcm::signal_t>(process, wire::kSignal);
+  hear_columns(process, [](const Signal& /*sample*/) {});
   process.on_health([&]() -> runtime::Process::Condition {
     const std::string complaint = navigator.complaint();
     std::string detail = complaint.empty() ? navigator.remark() : "";
@@ -168,7 +178,9 @@ void run_kalman(runtime::Process& process, const Config& config) {
   hear<fathom_lcm::tag_pose_t>(process, estimator, wire::kTagPose);
   hear<fathom_lcm::optical_flow_t>(process, estimator, wire::kOpticalFlow);
   hear<fathom_lcm::laser_range_t>(process, estimator, wire::kLaserRange);
-  hear<fathom_lcm::signal_t>(process, estimator, wire::kSignal);
+  hear_columns(process, [&](const Signal& sample) {
+    for (const StateEstimate& state : estimator.step(sample)) process.publish(wire::kState, wire::encode(state));
+  });
   process.on_restart([&] { estimator.reset(); });
   process.on_end([&] {
     for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));

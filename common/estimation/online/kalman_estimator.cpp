@@ -1,6 +1,7 @@
 #include "common/estimation/online/kalman_estimator.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fathom::estimation {
 namespace {
@@ -34,7 +35,7 @@ void KalmanEstimator::reset() {
   waiting_.clear();
   newest_ = now_ = inertial_ = fixed_ = std::nullopt;
   output_.clear();
-  late_ = unstarted_ = 0;
+  late_ = unstarted_ = ahead_ = 0;
 }
 
 const KalmanEstimator::Output& KalmanEstimator::wait(Event event) {
@@ -43,13 +44,22 @@ const KalmanEstimator::Output& KalmanEstimator::wait(Event event) {
     ++late_;
     return output_;
   }
-  newest_ = std::max(event.utime, newest_.value_or(event.utime));
+  if (!holds<Signal>(event.sample)) newest_ = std::max(event.utime, newest_.value_or(event.utime));
   // At equal times the kinds have a fixed order, so that arrival does not matter there either.
   const auto place = std::upper_bound(waiting_.begin(), waiting_.end(), event, [](const Event& a, const Event& b) {
     return a.utime != b.utime ? a.utime < b.utime : a.sample.index() < b.sample.index();
   });
   waiting_.insert(place, std::move(event));
   release(utime_after(*newest_, -settings_.latency));
+  return output_;
+}
+
+const KalmanEstimator::Output& KalmanEstimator::step(const Signal& sample) {
+  output_.clear();
+  if (!settings_.single(sample.name)) return output_;
+  const double lead = newest_ ? seconds_between(*newest_, sample.utime) : HUGE_VAL;
+  if (std::abs(lead) <= settings_.latency) return wait({sample.utime, sample});
+  ++(lead > 0.0 ? ahead_ : late_);
   return output_;
 }
 
@@ -79,7 +89,6 @@ void KalmanEstimator::release(Utime until) {
 bool KalmanEstimator::used(const Sample& sample) const {
   if (holds<OpticalFlow>(sample)) return settings_.flow && settings_.floor;
   if (holds<LaserRange>(sample)) return settings_.laser && settings_.floor;
-  if (const auto* signal = std::get_if<Signal>(&sample)) return settings_.single(signal->name).has_value();
   return true;
 }
 
@@ -123,6 +132,7 @@ void KalmanEstimator::say(Utime utime) {
 std::map<std::string, std::int64_t> KalmanEstimator::rejected() const {
   std::map<std::string, std::int64_t> counts;
   if (late_ > 0) counts["late"] = late_;
+  if (ahead_ > 0) counts["ahead"] = ahead_;
   if (unstarted_ > 0) counts["no start yet"] = unstarted_;
   std::visit(
       [&](const auto& estimator) {

@@ -33,14 +33,15 @@ class KalmanEstimator {
   /// Flow and laser need a floor in the settings; without one they are not used.
   const Output& step(const OpticalFlow& sample) { return wait({sample.utime, sample}); }
   const Output& step(const LaserRange& sample) { return wait({sample.utime, sample}); }
-  /// Columns that no instrument of the settings tells are not used.
-  const Output& step(const Signal& sample) { return wait({sample.utime, sample}); }
+  /// Columns that no instrument of the settings tells are not used. A column has whosever clock: it moves the time of
+  /// nothing else, and what lies further from the other instruments' than `latency` is refused.
+  const Output& step(const Signal& sample);
   /// The input has ended: everything that waits.
   const Output& finish();
   /// A log started over.
   void reset();
 
-  /// Samples not used, by reason: "late", "range B gated", "dvl not heard", "no start yet".
+  /// Samples not used, by reason: "late", "range B gated", "dvl not heard", "no start yet", "ahead".
   [[nodiscard]] std::map<std::string, std::int64_t> rejected() const;
 
  private:
@@ -65,7 +66,7 @@ class KalmanEstimator {
   std::vector<Event> waiting_;
   std::optional<Utime> newest_, now_, inertial_, fixed_;
   Output output_;
-  std::int64_t late_{}, unstarted_{};
+  std::int64_t late_{}, unstarted_{}, ahead_{};
 };
 
 }  // namespace fathom::estimation

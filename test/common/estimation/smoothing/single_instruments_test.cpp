@@ -39,11 +39,6 @@ std::vector<Mount> scattered() {
 struct Scattered {
   model::Vehicle vehicle = model::Vehicle::load(std::string{FATHOM_SOURCE_DIR} + "/config/vehicles/pap104_half.yaml");
   KalmanSettings instruments = test::instruments_from_repository("pap104_half");
-  Scattered() {
-    instruments.process.jerk = 0.1;
-    instruments.process.angular_jerk = 0.03;
-  }
-
   /// A recorded zigzag, and what the mounts tell of the flight: a_O + w x (w x r) + w_dot x r - g, along each.
   struct Trial {
     test::TrialRecording record;
@@ -141,17 +136,15 @@ TEST_CASE_FIXTURE(Scattered,
   CHECK(std::sqrt(biases / count) < 0.2 * std::sqrt(2.0) * kForceBias);  // of what they differ by before
 }
 
-TEST_CASE_FIXTURE(Scattered,
-                  "single instruments: the live filter takes them in, whatever the order in which they come") {
-  const Trial trial = record(7);
-  const KalmanSettings settings = with_singles();
-  const SmoothedTrial offline = smooth(trial.record.recording, settings);
-  KalmanEstimator live{settings};
+namespace {
+
+/// STATE of a recording whose other instruments come a tenth of a second after the package; `beside` may say more.
+template <class Beside>
+std::vector<StateEstimate> fed(KalmanEstimator& live, const Recording& r, const Beside& beside) {
   std::vector<StateEstimate> states;
   const auto keep = [&](const KalmanEstimator::Output& output) {
     states.insert(states.end(), output.begin(), output.end());
   };
-  const Recording& r = trial.record.recording;
   std::size_t depth = 0, ranges = 0, signal = 0;
   for (const Ahrs& one : r.ahrs) {
     const Utime late = one.utime - 100'000;
@@ -159,8 +152,20 @@ TEST_CASE_FIXTURE(Scattered,
     for (; ranges < r.ranges.size() && r.ranges[ranges].utime <= late; ++ranges) keep(live.step(r.ranges[ranges]));
     for (; signal < r.signals.size() && r.signals[signal].utime <= late; ++signal) keep(live.step(r.signals[signal]));
     keep(live.step(one));
+    beside(one.utime);
   }
   keep(live.finish());
+  return states;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Scattered,
+                  "single instruments: the live filter takes them in, whatever the order in which they come") {
+  const Trial trial = record(7);
+  const SmoothedTrial offline = smooth(trial.record.recording, with_singles());
+  KalmanEstimator live{with_singles()};
+  const std::vector<StateEstimate> states = fed(live, trial.record.recording, [](Utime) {});
   REQUIRE(states.size() > 1000);
   const StateEstimate& a = states[states.size() - 50];
   const auto b = std::ranges::find(offline.filtered, a.utime, &StateEstimate::utime);
@@ -168,6 +173,28 @@ TEST_CASE_FIXTURE(Scattered,
   CHECK((a.p_WB - b->p_WB).norm() < 1e-3);  // m: it begins a moment later than the log
   CHECK((a.nu - b->nu).norm() < 1e-3);
   for (const auto& [reason, number] : live.rejected()) CHECK_MESSAGE(reason.find("bow") == std::string::npos, reason);
+}
+
+TEST_CASE_FIXTURE(Scattered,
+                  "single instruments: columns of others, and clocks that are hours off, change no bit of STATE") {
+  const Trial trial = record(7);
+  KalmanEstimator live{with_singles()}, disturbed{with_singles()};
+  const std::vector<StateEstimate> alone = fed(live, trial.record.recording, [](Utime) {});
+  const std::vector<StateEstimate> beside = fed(disturbed, trial.record.recording, [&](Utime utime) {
+    for (const double off : {3600.0, -3600.0}) {
+      const Utime wrong = utime_after(utime, off);
+      CHECK(disturbed.step(Signal{.utime = wrong, .name = "winch", .unit = "m", .value = 3.0}).empty());
+      CHECK(disturbed.step(Signal{.utime = wrong, .name = "bow y", .unit = "m/s^2", .value = 9.0}).empty());
+    }
+  });
+  CHECK(disturbed.rejected().at("ahead") == static_cast<std::int64_t>(trial.record.recording.ahrs.size()));
+  REQUIRE(alone.size() > 1000);
+  REQUIRE(beside.size() == alone.size());
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    REQUIRE(beside[k].utime == alone[k].utime);
+    REQUIRE(beside[k].p_WB == alone[k].p_WB);
+    REQUIRE(beside[k].nu == alone[k].nu);
+  }
 }
 
 TEST_CASE_FIXTURE(Scattered, "single instruments: the vehicle file names the columns; their noises are measured") {
