@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "common/base/version.hpp"
+#include "common/report/style.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -40,6 +41,12 @@ std::string Album::fill(const std::string& page, const std::string& gnuplot) con
     done = end + 1;
   }
   return filled + page.substr(done);
+}
+
+std::string page_head(const std::string& title) {
+  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+         "content=\"width=device-width, initial-scale=1\"><title>Fathom: " +
+         escape(title) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n";
 }
 
 std::string version_line() {

@@ -40,6 +40,8 @@ class Album {
 [[nodiscard]] std::string folded(std::string section);
 /// A number that is read at a glance, on the first screen.
 [[nodiscard]] std::string tile(const std::string& big, const std::string& small);
+/// A page up to its first section: title, style, and room for small screens.
+[[nodiscard]] std::string page_head(const std::string& title);
 /// Which build wrote the page: the last line of every page.
 [[nodiscard]] std::string version_line();
 

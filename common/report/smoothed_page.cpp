@@ -10,9 +10,7 @@
 
 #include "common/base/spatial.hpp"
 #include "common/base/statistics.hpp"
-#include "common/report/page_parts.hpp"
 #include "common/report/plot.hpp"
-#include "common/report/style.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -33,12 +31,12 @@ struct Curve {
 };
 
 constexpr const char* kLine = "with lines lw 2 lc rgb '#22262b'";
-constexpr const char* kCross = "with points pt 2 ps 0.6 lw 1.5 lc rgb '#e07b00'";
+constexpr const char* kCross = "with points pt 2 ps 0.8 lw 2 lc rgb '#e07b00'";
 constexpr const char* kTruth = "with lines lw 1.5 dt 2 lc rgb '#2a7a3b'";
 constexpr const char* kOther = "with lines lw 2 dt 4 lc rgb '#1f6fb2'";
 
-Figure figure(const std::string& alt, const std::vector<Curve>& curves, const std::string& x, const std::string& y,
-              const std::string& more = "") {
+Figure drawn(const std::string& alt, const std::vector<Curve>& curves, const std::string& x, const std::string& y,
+             const std::string& more = "") {
   Figure f{.alt = alt, .width = 560, .height = 360};
   f.left = 80;
   std::string plot;
@@ -87,10 +85,36 @@ std::string phase_of(const std::vector<SmoothedState>& states) {
   return number(" In %.1f turns V is %.0f degrees ahead of U.", std::abs(yaw) / kTurn, 360.0 / kTurn * apart);
 }
 
-}  // namespace
+std::string instruments_of(const std::vector<estimation::InnovationStatistics>& instruments) {
+  std::string rows;
+  for (const estimation::InnovationStatistics& one : instruments) {
+    if (one.used + one.refused + one.dropped == 0) continue;
+    rows += "<tr>" + cell(escape(one.name)) + cell(std::to_string(one.used), "n") +
+            cell(std::to_string(one.refused), "n") + cell(std::to_string(one.dropped), "n") +
+            cell(number("%.2f", one.nis()), "n") + "</tr>\n";
+  }
+  if (rows.empty()) return "";
+  return "<details><summary>How its instruments fared</summary>\n<table>" +
+         heading_cells({"instrument", "used", "refused", "not heard", "NIS"}, {1, 2, 3, 4}) + rows +
+         "</table>\n<p class=\"soft small\">NIS: innovations squared over what is stated of them; 1 where the noise is "
+         "as "
+         "stated.</p></details>\n";
+}
 
-std::string smoothed_figures(const Recording& recording, std::span<const StateEstimate> filtered,
-                             bool inclinometer_used) {
+/// "Position within .. m, velocity within .. m/s".
+std::string sureness(const std::vector<SmoothedState>& states) {
+  std::vector<double> place, speed;  // m, m/s: standard deviations of the worst component
+  for (const SmoothedState& one : states) {
+    place.push_back(one.sigma.head<3>().maxCoeff());
+    speed.push_back(one.sigma.segment<3>(6).maxCoeff());
+  }
+  return "Position within " + number("%.2g m", kNormal95 * median(place)) + ", velocity within " +
+         number("%.2g m/s", kNormal95 * median(speed));
+}
+constexpr const char* kSureness = "As the smoother states it: 95 %, on the worst axis, at half of the instants better.";
+
+std::string section_of(const Recording& recording, const std::string& lead, const Smoothing& smoothing, Album& album) {
+  const std::vector<StateEstimate>& filtered = smoothing.filtered;
   const std::vector<SmoothedState>& s = recording.smoothed;
   const std::vector<Truth>& truth = recording.truth;
   const Utime origin = s.empty() ? Utime{} : s.front().utime;
@@ -122,39 +146,39 @@ std::string smoothed_figures(const Recording& recording, std::span<const StateEs
     incline.push_back({kOther, thinned(seen, kMostLine, [&](std::size_t k) { return seen[k]; })});
   }
   const auto world = [&](std::size_t k) { return Eigen::Vector3d(s[k].q_WB * s[k].nu.head<3>()); };
-  const std::vector<Figure> figures{figure("Plan view", three([](double, const auto& p, const auto&) {
-                                             return Point{p.x(), p.y()};
-                                           }),
-                                           "X (north) [m]", "Y (east) [m]", "set yrange [] reverse\n"),
-                                    figure("Y over time", three([](double now, const auto& p, const auto&) {
-                                             return Point{now, p.y()};
-                                           }),
-                                           "time [s]", "Y [m]"),
-                                    figure("Pitch", three([](double now, const auto&, const auto& q) {
-                                             return Point{now, pitch(q)};
-                                           }),
-                                           "time [s]", "pitch [rad]"),
-                                    figure("Inclinometer", incline, "time [s]", "pitch [rad]"),
-                                    figure("Velocities in the world",
-                                           {{kLine, thinned(s, kMostLine,
+  const std::vector<Figure> figures{drawn("Plan view", three([](double, const auto& p, const auto&) {
+                                            return Point{p.x(), p.y()};
+                                          }),
+                                          "X (north) [m]", "Y (east) [m]", "set yrange [] reverse\n"),
+                                    drawn("Y over time", three([](double now, const auto& p, const auto&) {
+                                            return Point{now, p.y()};
+                                          }),
+                                          "time [s]", "Y [m]"),
+                                    drawn("Pitch", three([](double now, const auto&, const auto& q) {
+                                            return Point{now, pitch(q)};
+                                          }),
+                                          "time [s]", "pitch [rad]"),
+                                    drawn("Inclinometer", incline, "time [s]", "pitch [rad]"),
+                                    drawn("Velocities in the world",
+                                          {{kLine, thinned(s, kMostLine,
+                                                           [&](std::size_t k) {
+                                                             return Point{t(s[k].utime), world(k).x()};
+                                                           })},
+                                           {kOther, thinned(s, kMostLine,
                                                             [&](std::size_t k) {
-                                                              return Point{t(s[k].utime), world(k).x()};
-                                                            })},
-                                            {kOther, thinned(s, kMostLine,
-                                                             [&](std::size_t k) {
-                                                               return Point{t(s[k].utime), world(k).y()};
-                                                             })}},
-                                           "time [s]", "velocity [m/s]"),
-                                    figure("Sway acceleration",
-                                           {{kTruth, thinned(truth, kMostLine,
-                                                             [&](std::size_t k) {
-                                                               return Point{t(truth[k].utime), truth[k].nu_dot[1]};
-                                                             })},
-                                            {kLine, thinned(s, kMostLine,
-                                                            [&](std::size_t k) {
-                                                              return Point{t(s[k].utime), s[k].nu_dot[1]};
+                                                              return Point{t(s[k].utime), world(k).y()};
                                                             })}},
-                                           "time [s]", "derivative of v [m/s^2]")};
+                                          "time [s]", "velocity [m/s]"),
+                                    drawn("Sway acceleration",
+                                          {{kTruth, thinned(truth, kMostLine,
+                                                            [&](std::size_t k) {
+                                                              return Point{t(truth[k].utime), truth[k].nu_dot[1]};
+                                                            })},
+                                           {kLine, thinned(s, kMostLine,
+                                                           [&](std::size_t k) {
+                                                             return Point{t(s[k].utime), s[k].nu_dot[1]};
+                                                           })}},
+                                          "time [s]", "derivative of v [m/s^2]")};
 
   Eigen::Vector3d apart = Eigen::Vector3d::Zero();
   double late = 0.0, body = 0.0, inertial = 0.0, n = 0.0;
@@ -167,13 +191,14 @@ std::string smoothed_figures(const Recording& recording, std::span<const StateEs
     apart += (s[k].p_WB - filtered[k].p_WB).cwiseAbs();
     late += 1.0;
   }
-  const std::string keys =
-      truth.empty() ? "line smoother, crosses filter" : "line smoother, crosses filter, dashed truth";
-  const std::string witness =
-      recording.ahrs.empty() || held == 0.0 ? "nobody recorded one"
-      : inclinometer_used
-          ? "which the filter used; " + number("rms apart %.4f rad", std::sqrt(square / held))
-          : "which the filter never saw; " + number("rms apart from the smoother %.4f rad", std::sqrt(square / held));
+  const std::string keys = std::string{"line smoother"} + (filtered.empty() ? "" : ", crosses filter") +
+                           (truth.empty() ? "" : ", dashed truth");
+  const std::string apart_words =
+      number("rms apart from the smoother %.4f rad", std::sqrt(square / std::max(held, 1.0)));
+  const std::string witness = held == 0.0                           ? ", which nobody recorded"
+                              : !smoothing.inclinometer_used        ? "; " + apart_words
+                              : smoothing.inclinometer_used.value() ? ", which the filter used; " + apart_words
+                                                                    : ", which the filter never saw; " + apart_words;
   const std::string captions[] = {
       "1. Plan view, from above: " + keys + ".",
       "2. Y: " + keys + "." +
@@ -181,45 +206,45 @@ std::string smoothed_figures(const Recording& recording, std::span<const StateEs
                                100 * apart.x() / late, 100 * apart.y() / late, 100 * apart.z() / late)
                       : ""),
       "3. Pitch: " + keys + ".",
-      "4. The pitch inclinometer, " + witness + ".",
+      "4. The pitch inclinometer" + witness + ".",
       "5. Velocities in the world: line U, blue V." + phase_of(s),
       "6. Derivative of v in the body: line smoother" + std::string{truth.empty() ? "" : ", dashed truth"} + "." +
           (n > 0.0
                ? number(" Its mean is %.4f m/s^2, that of the inertial y acceleration %.4f.", body / n, inertial / n)
                : "")};
-  const std::vector<std::string> pictures = render(figures);
-  std::string html = "<section><h2>" + escape(recording.name) + "</h2><div class=\"grid pair\">\n";
-  for (std::size_t i = 0; i < pictures.size(); ++i)
-    html += "<figure>" + pictures[i] + "<figcaption>" + captions[i] + "</figcaption></figure>\n";
-  return html + "</div></section>\n";
+  std::string html = "<section><h2>" + escape(recording.name) + "</h2>\n" + lead + "<div class=\"grid pair\">\n";
+  for (std::size_t i = 0; i < figures.size(); ++i) html += figure(album.place(figures[i]), captions[i]);
+  return html + "</div>\n" + instruments_of(smoothing.instruments) + "</section>\n";
 }
 
-std::string smoothed_page(const Recording& recording, std::span<const StateEstimate> filtered, bool inclinometer_used) {
+}  // namespace
+
+std::string smoothed_section(const Recording& recording, const Smoothing& smoothing, Album& album) {
+  const std::string lead = recording.smoothed.empty() ? ""
+                                                      : "<p>" + sureness(recording.smoothed) +
+                                                            ". <span class=\"soft\">" + kSureness + "</span></p>\n";
+  return section_of(recording, lead, smoothing, album);
+}
+
+std::string smoothed_page(const Recording& recording, const Smoothing& smoothing) {
   const auto& s = recording.smoothed;
-  std::vector<double> place, speed;  // m, m/s: standard deviations of the worst component
-  for (const SmoothedState& one : s) {
-    place.push_back(one.sigma.head<3>().maxCoeff());
-    speed.push_back(one.sigma.segment<3>(6).maxCoeff());
-  }
   const std::string title = "How the vehicle moved: " + recording.name;
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\"><title>Fathom: " +
-      escape(title) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n<header><h1>" + escape(title) +
-      "</h1>\n<p class=\"soft\">A recorded run, smoothed: each state rests on what was measured before and after "
-      "it.</p>\n";
+      page_head(title) + "<header><h1>" + escape(title) +
+      "</h1>\n<p class=\"soft\">A recorded run, smoothed: each state rests on what was measured before and "
+      "after it.</p>\n";
   if (!s.empty())
-    html +=
-        "<div class=\"badge adequate\">Position within " + number("%.2g m", kNormal95 * median(place)) +
-        ", velocity within " + number("%.2g m/s", kNormal95 * median(speed)) + "</div>\n" +
-        "<p class=\"lead\">As the smoother states it: 95 %, on the worst axis, at half of the instants better.</p>\n" +
-        "<div class=\"tiles\">" + tile(number("%.4g s", seconds_between(s.front().utime, s.back().utime)), "smoothed") +
-        tile(std::to_string(s.size()), "states") +
-        tile(std::to_string(filtered.size()), "states of the filter beside them") + "</div>\n";
+    html += "<div class=\"badge adequate\">" + sureness(s) + "</div>\n<p class=\"lead\">" + kSureness + "</p>\n" +
+            "<div class=\"tiles\">" +
+            tile(number("%.4g s", seconds_between(s.front().utime, s.back().utime)), "smoothed") +
+            tile(std::to_string(s.size()), "states") +
+            tile(std::to_string(smoothing.filtered.size()), "states of the filter beside them") + "</div>\n";
   html +=
       "<p class=\"note\"><b>Next.</b> Forces from this motion: fathom regress SMOOTHED.lcmlog --vehicle "
       "V.yaml.</p></header>\n";
-  return html + smoothed_figures(recording, filtered, inclinometer_used) + version_line() + "</main></body></html>\n";
+  Album album;
+  html += section_of(recording, "", smoothing, album);
+  return album.fill(html + version_line() + "</main></body></html>\n", "gnuplot");
 }
 
 }  // namespace fathom::report

@@ -2,21 +2,28 @@
 // crosses, the truth of a simulated run dashed, and the inclinometer beside them.
 #pragma once
 
-#include <span>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "common/estimation/online/kinematic_estimator.hpp"
+#include "common/report/page_parts.hpp"
 #include "common/samples/recording.hpp"
 
 namespace fathom::report {
 
-/// HTML of one run: a heading and six figures with what they show in numbers. `recording` holds SMOOTHED; `filtered` is
-/// the forward filter at the same times. `inclinometer_used`: roll and pitch of AHRS went into the estimate, so that
-/// Figure 4 is no witness. Error when gnuplot is missing or refuses a figure.
-[[nodiscard]] std::string smoothed_figures(const Recording& recording, std::span<const StateEstimate> filtered,
-                                           bool inclinometer_used);
+/// How a run was smoothed; of one that was smoothed before, nothing is known.
+struct Smoothing {
+  std::vector<StateEstimate> filtered;                        ///< the forward filter's, at the times of SMOOTHED
+  std::vector<estimation::InnovationStatistics> instruments;  ///< how each fared
+  std::optional<bool> inclinometer_used;  ///< roll and pitch of AHRS went into the estimate: Figure 4 is no witness
+};
 
-/// The same as a page of its own.
-[[nodiscard]] std::string smoothed_page(const Recording& recording, std::span<const StateEstimate> filtered,
-                                        bool inclinometer_used);
+/// HTML of one run: a heading and six figures with what they show in numbers; how its instruments fared folds out.
+/// `recording` holds SMOOTHED.
+[[nodiscard]] std::string smoothed_section(const Recording& recording, const Smoothing& smoothing, Album& album);
+
+/// The same as a page of its own. InputError when gnuplot is missing or refuses a figure.
+[[nodiscard]] std::string smoothed_page(const Recording& recording, const Smoothing& smoothing);
 
 }  // namespace fathom::report

@@ -4,29 +4,22 @@
 #include <memory>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
-#include "common/base/config.hpp"
-#include "common/base/error.hpp"
-#include "common/base/progress_line.hpp"
-#include "common/consistency/consistency.hpp"
-#include "common/estimation/corrected_recording.hpp"
-#include "common/estimation/smoothing/state_reconstruction.hpp"
 #include "common/report/smoothed_page.hpp"
-#include "common/report/text.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "common/wire/log_writer.hpp"
 #include "common/wire/streams.hpp"
-#include "processes/fathom/bus/trial_files.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
+#include "processes/fathom/smoothing.hpp"
 
 namespace fathom::tool {
 namespace {
 
-constexpr double kConverged = 30.0;   // s after which filter and smoother are compared, as Pereira and Duncan did
-constexpr double kMostRefused = 0.2;  // of an instrument's numbers: more are no outliers
+constexpr double kConverged = 30.0;  // s after which filter and smoother are compared, as Pereira and Duncan did
 
 struct SmoothOptions {
   std::string run, out, model, map, page;
@@ -34,12 +27,9 @@ struct SmoothOptions {
   bool stated{false}, without_position{false}, despite_state{false};
 };
 
-double refused_share(const estimation::InnovationStatistics& one) {
-  const auto refused = static_cast<double>(one.refused), all = static_cast<double>(one.used + one.refused);
-  return all > 0.0 ? refused / all : 0.0;
-}
-
-void print(const estimation::SmoothedTrial& trial, const std::vector<estimation::SingleInertial>& singles) {
+void print(const Recording& recording, const estimation::Reconstruction& found) {
+  const estimation::SmoothedTrial& trial = found.trial;
+  const std::vector<SmoothedState>& smoothed = recording.smoothed;
   std::printf("%-18s %9s %9s %9s %8s\n", "instrument", "used", "refused", "not heard", "NIS");
   for (const estimation::InnovationStatistics& one : trial.statistics) {
     if (one.used + one.refused + one.dropped == 0) continue;
@@ -53,9 +43,9 @@ void print(const estimation::SmoothedTrial& trial, const std::vector<estimation:
   }
   Eigen::Vector3d early = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero();
   double count = 0.0;
-  for (std::size_t k = 0; k < trial.smoothed.size(); ++k) {
+  for (std::size_t k = 0; k < smoothed.size(); ++k) {
     const Eigen::Vector3d apart = trial.apart[k].cast<double>().cwiseAbs();
-    if (seconds_between(trial.smoothed.front().utime, trial.smoothed[k].utime) < kConverged) {
+    if (seconds_between(smoothed.front().utime, smoothed[k].utime) < kConverged) {
       early = early.cwiseMax(apart);
     } else {
       sum += apart;
@@ -69,9 +59,10 @@ void print(const estimation::SmoothedTrial& trial, const std::vector<estimation:
                 100 * sum.z() / count);
   std::printf("\nbiases: accelerometer %.4f %.4f %.4f m/s^2, gyro %.5f %.5f %.5f rad/s", trial.biases[18],
               trial.biases[19], trial.biases[20], trial.biases[21], trial.biases[22], trial.biases[23]);
-  for (std::size_t i = 0; i < singles.size(); ++i) {
-    std::printf(", %s %.4f %s", singles[i].mount.signal.c_str(),
-                trial.biases[model::at::kSingleBias + static_cast<Eigen::Index>(i)], singles[i].mount.unit());
+  for (std::size_t i = 0; i < found.settings.singles.size(); ++i) {
+    std::printf(", %s %.4f %s", found.settings.singles[i].mount.signal.c_str(),
+                trial.biases[model::at::kSingleBias + static_cast<Eigen::Index>(i)],
+                found.settings.singles[i].mount.unit());
   }
   std::printf("\n");
 }
@@ -117,53 +108,10 @@ std::uint64_t write(const Recording& recording, const std::string& path) {
   return log.finish();
 }
 
-/// Share of an instrument's numbers that was refused, of the one that most of was.
-double most_refused(const estimation::SmoothedTrial& trial) {
-  double most = 0.0;
-  for (const estimation::InnovationStatistics& one : trial.statistics) most = std::max(most, refused_share(one));
-  return most;
-}
-
-/// As recorded. Where the instruments contradict each other, so that this is refused or refuses more of one than
-/// outliers are, once more with what the comparison of sensors corrects: axes, clocks, scales.
-estimation::Reconstruction reconstructed(const Recording& recording, const estimation::TrialFiles& files,
-                                         const estimation::ReconstructionOptions& asked,
-                                         std::vector<std::string>& notes, const Progress& progress) {
-  std::optional<estimation::Reconstruction> first;
-  std::string why;
-  try {
-    first = estimation::reconstruct_state(recording, files, asked, notes, progress);
-    if (most_refused(first->trial) <= kMostRefused) return std::move(*first);
-    why = recording.name + ": much of one instrument is refused";
-  } catch (const InputError& refused) {
-    why = refused.what();
-  }
-  const consistency::ConsistencyResult checked = consistency::check_consistency({&recording, 1});
-  std::string what;
-  for (const ConsistencyFinding& one : checked.findings) {
-    if (one.action.starts_with("corrected"))
-      what += (what.empty() ? "" : ", ") + one.signal + " (" + report::effect_title(one.finding) + ")";
-  }
-  if (!what.empty()) {
-    notes.push_back(why + "; once more with what the comparison of sensors corrects: " + what);
-    try {
-      auto again = estimation::reconstruct_state(estimation::corrected(recording, checked.corrections.front()), files,
-                                                 asked, notes, progress);
-      if (!first || most_refused(again.trial) < most_refused(first->trial)) return again;
-      notes.push_back(recording.name + ": that refuses no less; as recorded");
-    } catch (const InputError& error) {
-      if (!first) throw InputError(std::string{error.what()} + " (corrected: " + what + ")");
-    }
-  }
-  if (!first) throw InputError(why);
-  return std::move(*first);
-}
-
 void run_smooth(const SmoothOptions& options) {
   refuse_over(options.out, options.run);
   std::vector<std::string> notes;
-  Recording recording = std::move(read_recordings({options.run}, options.map, notes).front());
-  const estimation::TrialFiles files = trial_files(options.files, recording, notes);
+  Recording read = std::move(read_recordings({options.run}, options.map, notes).front());
   estimation::ReconstructionOptions asked{.stated = options.stated,
                                           .without_position = options.without_position,
                                           .despite_state = options.despite_state,
@@ -172,32 +120,11 @@ void run_smooth(const SmoothOptions& options) {
     asked.model =
         options.model == "printed" ? estimation::KinematicModel::kPrinted : estimation::KinematicModel::kCoupled;
   }
-  std::optional<ProgressLine> line{std::in_place};
-  const auto tell = [&] {
-    for (const std::string& note : notes) line->say(note);
-    notes.clear();
-  };
-  tell();
-  estimation::SmoothedTrial trial;
-  bool attitude_used = false;
-  std::vector<estimation::SingleInertial> singles;
-  try {
-    auto found = reconstructed(recording, files, asked, notes, line->progress());
-    attitude_used = found.settings.attitude == estimation::AttitudeUse::kEverything;
-    singles = found.settings.singles;
-    trial = std::move(found.trial);
-  } catch (const InputError&) {
-    tell();
-    throw;
-  }
-  tell();
-  line.reset();
-  print(trial, singles);
-  recording.state.clear();
-  recording.smoothed = std::move(trial.smoothed);
+  auto [recording, found] = smoothed_run(std::move(read), options.files, asked, std::move(notes));
+  print(recording, found);
   const auto events = write(recording, options.out);
   if (!options.page.empty())
-    tables::write_file(options.page, report::smoothed_page(recording, trial.filtered, attitude_used));
+    tables::write_file(options.page, report::smoothed_page(recording, smoothing_of(std::move(found))));
   std::printf("%s: %llu events, %zu of them SMOOTHED\n", options.out.c_str(), static_cast<unsigned long long>(events),
               recording.smoothed.size());
 }

@@ -2,15 +2,13 @@
 // VI): what mass, weight, thrusters, umbilical and chain do not explain is regressed on products of velocities.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "common/identification/regression/manoeuvre_rows.hpp"
 #include "common/identification/regression/stepwise.hpp"
 #include "common/model/vehicle.hpp"
-#include "common/samples/recording.hpp"
 
 namespace fathom::identification {
 
@@ -23,33 +21,6 @@ struct RegressionSettings {
   bool errors{true};  ///< of every term also what its scatter does not tell (term_errors.hpp)
   StepwiseSettings stepwise;
 };
-
-/// What pulls at the hull besides thrusters, when load cells measure it: names as in the vehicle file's `of`.
-inline constexpr std::array<const char*, 2> kPulls{"umbilical", "chain"};
-
-/// Rows of one manoeuvre, cut at gaps.
-struct ManoeuvreRows {
-  struct Row {
-    Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
-    Vector6d nu{Vector6d::Zero()}, nu_dot{Vector6d::Zero()};
-    Vector6d known{Vector6d::Zero()};  ///< N, N m: thrusters, umbilical and chain, as measured
-    std::array<Vector6d, kPulls.size()> pulls{Vector6d::Zero(), Vector6d::Zero()};  ///< what of it is theirs
-    std::vector<Vector6d> parts{};  ///< and what each load cell and thruster says, whose gains err apart
-    Eigen::Vector3d v_WF{Eigen::Vector3d::Zero()};  ///< m/s, the water's velocity as the log's SIGNAL tells it
-    Eigen::Vector3d a_WF{Eigen::Vector3d::Zero()};  ///< m/s^2, its rate
-  };
-  std::string name;
-  double dt{};                              ///< s
-  std::vector<std::vector<Row>> stretches;  ///< of equal steps
-  /// "load cells", "load cells and THRUSTERS", "THRUSTERS"; then ", the umbilical's length", ", the water's velocity"
-  std::string known_from;
-  std::size_t cells{};                                      ///< so many of the parts are load cells, the rest computed
-  Eigen::Vector3d sigma_attitude{Eigen::Vector3d::Zero()};  ///< rad, typical of SMOOTHED
-  Eigen::Vector3d sigma_velocity{Eigen::Vector3d::Zero()};  ///< m/s
-};
-
-/// InputError in one line when the log holds no SMOOTHED, or no force at all, or load cells that are not the file's.
-[[nodiscard]] ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle, double rate);
 
 /// Columns of one axis and what they shall explain, dimensionless numbers as unknowns.
 struct AxisCandidates {
@@ -71,7 +42,7 @@ struct AxisRegression {
   StepwiseResult together;                 ///< all, cross-validated over manoeuvres
 };
 
-/// All six axes. InputError when the vehicle file has no hydrodynamics.
+/// All six axes. InputError as need_hydrodynamics.
 [[nodiscard]] std::vector<AxisRegression> regress(const model::Vehicle& vehicle, std::span<const ManoeuvreRows> runs,
                                                   const RegressionSettings& settings);
 

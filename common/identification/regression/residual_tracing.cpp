@@ -2,36 +2,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fathom::identification {
 namespace {
 
-struct Residual {
-  double rms{};
-  double correlation{};  ///< with the pull
-};
-
-Residual residual_of(const AxisRegression& axis, const model::Vehicle& vehicle, std::span<const ManoeuvreRows> runs,
-                     const RegressionSettings& settings, std::size_t pull) {
-  double n = 0.0, z1 = 0.0, z2 = 0.0, f1 = 0.0, f2 = 0.0, zf = 0.0;
+/// What an axis' selected terms leave, stretch by stretch.
+std::vector<Eigen::VectorXd> residuals_of(const AxisRegression& axis, const model::Vehicle& vehicle,
+                                          std::span<const ManoeuvreRows> runs, const RegressionSettings& settings) {
+  std::vector<Eigen::VectorXd> residuals;
   for (const ManoeuvreRows& run : runs) {
     for (const auto& stretch : run.stretches) {
       const Eigen::MatrixXd columns = columns_of(stretch, axis.axis, axis.candidates, vehicle, settings.v_WF);
-      Eigen::VectorXd z = columns.rightCols<1>();
+      Eigen::VectorXd& z = residuals.emplace_back(columns.rightCols<1>());
       for (const SelectedTerm& term : axis.together.terms) z -= term.value * columns.col(term.column);
-      for (std::size_t i = 0; i < stretch.size(); ++i) {
-        const double one = z[static_cast<Eigen::Index>(i)], force = stretch[i].pulls[pull][axis.axis];
-        n += 1.0;
-        z1 += one;
-        z2 += one * one;
-        f1 += force;
-        f2 += force * force;
-        zf += one * force;
-      }
     }
   }
+  return residuals;
+}
+
+double rms(const std::vector<PullTrace>& traces, const Eigen::VectorXd PullTrace::*what) {
+  double n = 0.0, square = 0.0;
+  for (const PullTrace& one : traces) {
+    n += static_cast<double>((one.*what).size());
+    square += (one.*what).squaredNorm();
+  }
+  return std::sqrt(square / n);
+}
+
+/// Of the residual before with the pull, means apart.
+double correlation(const std::vector<PullTrace>& traces) {
+  double n = 0.0, z1 = 0.0, z2 = 0.0, f1 = 0.0, f2 = 0.0, zf = 0.0;
+  for (const PullTrace& one : traces) {
+    n += static_cast<double>(one.pull.size());
+    z1 += one.before.sum();
+    z2 += one.before.squaredNorm();
+    f1 += one.pull.sum();
+    f2 += one.pull.squaredNorm();
+    zf += one.before.dot(one.pull);
+  }
   const double spread = (z2 - z1 * z1 / n) * (f2 - f1 * f1 / n);
-  return {.rms = std::sqrt(z2 / n), .correlation = spread > 0.0 ? (zf - z1 * f1 / n) / std::sqrt(spread) : 0.0};
+  return spread > 0.0 ? (zf - z1 * f1 / n) / std::sqrt(spread) : 0.0;
 }
 
 bool has(const AxisRegression& axis, int column) {
@@ -58,15 +69,25 @@ std::vector<TracedPull> trace_pulls(const model::Vehicle& vehicle, std::span<con
     }
     const std::vector<AxisRegression> blind = regress(vehicle, without, settings);
     for (std::size_t axis = 0; axis < known.size(); ++axis) {
-      const Residual before = residual_of(blind[axis], vehicle, without, settings, pull);
       TracedPull& one = traced.emplace_back();
       one.axis = known[axis].axis;
       one.pull = pull;
-      one.before = before.rms;
-      one.after = residual_of(known[axis], vehicle, runs, settings, pull).rms;
       one.phi_before = blind[axis].together.phi;
       one.phi_after = known[axis].together.phi;
-      one.correlation = before.correlation;
+      auto before = residuals_of(blind[axis], vehicle, without, settings);
+      auto after = residuals_of(known[axis], vehicle, runs, settings);
+      for (std::size_t run = 0, at = 0; run < runs.size(); ++run) {
+        for (const auto& stretch : runs[run].stretches) {
+          PullTrace& trace = one.traces.emplace_back(run, runs[run].dt, std::move(before[at]), std::move(after[at]));
+          trace.pull.resize(static_cast<Eigen::Index>(stretch.size()));
+          for (Eigen::Index i = 0; i < trace.pull.size(); ++i)
+            trace.pull[i] = stretch[static_cast<std::size_t>(i)].pulls[pull][one.axis];
+          ++at;
+        }
+      }
+      one.before = rms(one.traces, &PullTrace::before);
+      one.after = rms(one.traces, &PullTrace::after);
+      one.correlation = correlation(one.traces);
       for (const SelectedTerm& term : blind[axis].together.terms) {
         if (!has(known[axis], term.column)) {
           one.gained.push_back(known[axis].candidates.names[static_cast<std::size_t>(term.column)]);

@@ -7,6 +7,13 @@
 
 namespace fathom::identification {
 
+/// What a pull did on one axis over time, row by row of one stretch of a run. N or N m
+struct PullTrace {
+  std::size_t run{};
+  double dt{};                          ///< s
+  Eigen::VectorXd before, after, pull;  ///< residual without and with the pull subtracted, and the pull itself
+};
+
 /// One pull on one axis, all runs together.
 struct TracedPull {
   int axis{};
@@ -15,6 +22,7 @@ struct TracedPull {
   double phi_before{}, phi_after{};
   double correlation{};             ///< of the residual before with the pull, means apart
   std::vector<std::string> gained;  ///< terms that are selected only where the pull is not known
+  std::vector<PullTrace> traces;
 };
 
 /// Terms are selected anew each time: what a missing force leaves may be taken for a derivative. Pulls that no cell

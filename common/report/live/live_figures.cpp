@@ -1,5 +1,6 @@
 #include "common/report/live/live_figures.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -86,6 +87,30 @@ std::string y_range(const Polyline& line) {
   return "set yrange [" + text(low - edge) + ":" + text(high + edge) + "]\n";
 }
 
+/// Tics of a plan whose axes have one scale: where the path is long and narrow, gnuplot's own choice for the short axis
+/// would write one number over the other.
+std::string plan_tics(std::span<const StateEstimate> states) {
+  constexpr double kWide = 480.0, kHigh = 300.0;  // px that the axes have
+  constexpr double kApart = 50.0, kBelow = 22.0;  // px that a number needs, along x and along y
+  constexpr double kUsual = 6.0;                  // tics that gnuplot chooses about
+  Eigen::AlignedBox2d box;
+  for (const StateEstimate& one : states) {
+    if (one.valid) box.extend(Eigen::Vector2d{one.p_WB.head<2>()});
+  }
+  if (box.isEmpty() || !(box.sizes().maxCoeff() > 0.0)) return "";
+  const double scale = std::min(kWide / std::max(box.sizes().x(), 1e-9), kHigh / std::max(box.sizes().y(), 1e-9));
+  const auto tics = [&](const char* axis, double size, double needed) {
+    if (size * scale > kUsual * needed) return std::string{};
+    const double least = needed / scale, decade = std::pow(10.0, std::floor(std::log10(least)));
+    const double step = decade * (least <= decade         ? 1.0
+                                  : least <= 2.0 * decade ? 2.0
+                                  : least <= 5.0 * decade ? 5.0
+                                                          : 10.0);
+    return "set " + std::string{axis} + " " + text(step) + "\n";
+  };
+  return tics("xtics", box.sizes().x(), kApart) + tics("ytics", box.sizes().y(), kBelow);
+}
+
 }  // namespace
 
 Figure draw_component(const Recording& recording, std::size_t axis, std::span<const AidCurve> aids) {
@@ -117,7 +142,7 @@ Figure draw_plan(const Recording& recording, std::span<const AidCurve> aids) {
     figure.script += dots(name.c_str(), *aids[i].seen, 0, 1, false);
     plot += ", $" + name + dot_style(aids[i].colour);
   }
-  figure.script += data + "EOD\n" + heading("y east [m]") + below("x north [m]") +
+  figure.script += data + "EOD\n" + heading("y east [m]") + below("x north [m]") + plan_tics(recording.state) +
                    "set size ratio -1\nset yrange [] reverse\nplot $e with lines lw 1 lc rgb '" + kMeasuredColour +
                    "'" + plot + "\n";
   return figure;

@@ -11,7 +11,6 @@
 #include "common/report/live/live_trial.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
-#include "common/report/style.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -82,17 +81,22 @@ std::string outcome(const LiveTrialResult& result, const Recording& recording, c
   if (result.phase == "recorded") words = "A recorded run, flown without a supervisor";
   if (!result.failing.empty()) words += "; the model lacks something on " + join(result.failing, ", ");
   const auto left = std::ranges::count_if(result.visits, [](const ModeVisit& visit) { return visit.left; });
-  std::string html = "<header><h1>Live trial of " + escape(result.vehicle) +
+  std::string html = "<header><h1>" + escape(trial_title(result)) +
                      "</h1>\n<p class=\"soft\">Site: " + escape(result.site) + "</p>\n<div class=\"badge " +
-                     (settled && result.failing.empty() ? "adequate" : "ambiguous") + "\">" + escape(words) +
-                     "</div>\n<p class=\"lead\">" + escape(result.reason) + "</p>\n" + findings(result) +
-                     "<div class=\"tiles\">";
+                     (settled && result.failing.empty() ? "adequate"
+                      : result.phase == "recorded"      ? "other"
+                                                        : "ambiguous") +
+                     "\">" + escape(words) + "</div>\n<p class=\"lead\">" + escape(result.reason) + "</p>\n" +
+                     findings(result) + "<div class=\"tiles\">";
   html += tile(number(result.seconds, 4) + " s", "from the first state to the last");
-  html += tile(std::to_string(left) + " of " + std::to_string(result.visits.size()), "modes settled");
-  html += tile(std::to_string(result.parameters.size()), "parameters identified on line");
-  html += tile(result.ranking.verdict.empty() ? "-" : result.ranking.verdict,
-               "the diagnoser's verdict; in the model: " +
-                   (result.adopted.empty() ? std::string{"no effect"} : join(result.adopted, ", ")));
+  if (!result.visits.empty())
+    html += tile(std::to_string(left) + " of " + std::to_string(result.visits.size()), "modes settled");
+  if (!result.parameters.empty())
+    html += tile(std::to_string(result.parameters.size()), "parameters identified on line");
+  if (!result.ranking.verdict.empty() || !result.visits.empty())
+    html += tile(result.ranking.verdict.empty() ? "-" : result.ranking.verdict,
+                 "the diagnoser's verdict; in the model: " +
+                     (result.adopted.empty() ? std::string{"no effect"} : join(result.adopted, ", ")));
   const bool deep = seen.tags.t.empty();
   const std::array place{AidCurve{deep ? &seen.usbl : &seen.tags, kTagColour}};
   html += "</div>\n<div class=\"grid pair\">" +
@@ -105,6 +109,7 @@ std::string outcome(const LiveTrialResult& result, const Recording& recording, c
 }
 
 std::string mode_table(const LiveTrialResult& result) {
+  if (result.visits.empty() && result.flights.empty()) return "";
   std::string html = "<section><h2>What was flown</h2><table>" +
                      heading_cells({"Mode", "From [s]", "To [s]", "Metric", "Threshold", "Outcome"}, {1, 2, 3, 4});
   for (const ModeVisit& visit : result.visits) {
@@ -123,6 +128,7 @@ std::string mode_table(const LiveTrialResult& result) {
 }
 
 std::string table_1_1(const LiveTrialResult& result) {
+  if (result.parameters.empty()) return "";
   std::string html =
       heading("The vehicle's numbers", "Table 1.1") + "<p>Numbers of the <b>" + escape(estimate_words(result)) +
       "</b>. <b>" + escape(doubt_words(result)) + "</b></p><table>" +
@@ -247,6 +253,7 @@ std::string evolution(const Recording& recording, const LiveTrialResult& result,
             section("How the numbers of heave and yaw settled, all motions at once", "Figure 1.18", heave_yaw,
                     total_begins, total_ends);
   }
+  if (result.visits.empty()) return html;
   html += heading("When each motion was sure", "Figure 1.19") +
           "<p class=\"small soft\">Sum of the variances of a mode's parameters "
           "(eq. 1.15) against its threshold (dashed); shaded: the mode itself.</p><div class=\"grid\">";
@@ -339,10 +346,7 @@ std::string to_html(const LiveTrialResult& result, const Recording& recording, c
                     const estimation::NavigatorSettings* filters, const std::string& gnuplot) {
   Album album;
   const estimation::AidsSeen seen = estimation::aids_seen(recording, vehicle.mounts, site, trial_origin(recording));
-  std::string page =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\"><title>Fathom: live trial of " +
-      escape(result.vehicle) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n";
+  std::string page = page_head(trial_title(result));
   page += outcome(result, recording, seen, album) + mode_table(result) + table_1_1(result);
   if (result.afterwards) page += afterwards_section(*result.afterwards);
   page += each_folded(suspects(result) + motion(recording, seen, album));

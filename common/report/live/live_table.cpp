@@ -18,6 +18,7 @@ std::string rule(const std::string& title) {
 }
 
 std::string modes(const LiveTrialResult& result) {
+  if (result.visits.empty() && result.flights.empty()) return "";
   std::string text = rule("Modes");
   text += pad_right("mode", 10) + pad_left("from", 8) + pad_left("to", 8) + pad_left("metric", 11) +
           pad_left("threshold", 11) + "  outcome\n";
@@ -38,6 +39,7 @@ std::string modes(const LiveTrialResult& result) {
 }
 
 std::string parameters(const LiveTrialResult& result) {
+  if (result.parameters.empty()) return "";
   std::string text = rule("Identified (± 95 %)") + "  " + estimate_words(result) + "\n";
   for (const std::string& line : wrap(doubt_words(result), kColumns - 2)) text += "  " + line + "\n";
   text += pad_right("", 10) + pad_left("identified", 24) + "  " + pad_right("unit", 16);
@@ -95,7 +97,7 @@ std::string truth(const TruthComparison& truth) {
 }  // namespace
 
 std::string to_table(const LiveTrialResult& result) {
-  std::string text = rule("Live trial of " + result.vehicle + " (" + result.site + "): " + result.phase + " after " +
+  std::string text = rule(trial_title(result) + " (" + result.site + "): " + result.phase + " after " +
                           number(result.seconds, 4) + " s");
   for (const std::string& line : wrap(result.reason, kColumns - 2)) text += "  " + line + "\n";
   text += modes(result) + parameters(result) + suspects(result);

@@ -100,6 +100,10 @@ std::vector<FlownSegment> flights_of(const std::vector<Excitation>& said, Utime 
 
 Utime trial_origin(const Recording& recording) { return recording.state.empty() ? 0 : recording.state.front().utime; }
 
+std::string trial_title(const LiveTrialResult& result) {
+  return (result.phase == "recorded" ? "Trial of " : "Live trial of ") + result.vehicle;
+}
+
 std::string estimate_words(const LiveTrialResult& result) {
   if (!result.joint_from) return "recursive estimate, from STATE";
   const std::string from = number(*result.joint_from, 3) + " s";

@@ -27,6 +27,8 @@ namespace fathom::report {
 /// none.
 [[nodiscard]] Afterwards read_afterwards(const std::string& folder, const std::string& page);
 [[nodiscard]] std::string afterwards_section(const Afterwards& found);
+/// "Live trial of ..."; of a run without a supervisor, "Trial of ...".
+[[nodiscard]] std::string trial_title(const LiveTrialResult& result);
 /// Whose numbers the parameters are: the recursive estimate's or the joint one's, and since when.
 [[nodiscard]] std::string estimate_words(const LiveTrialResult& result);
 /// That the model lacks something, where its residual has failed its test; else nothing.

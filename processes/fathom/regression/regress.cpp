@@ -2,16 +2,19 @@
 #include <cstdio>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/motions.hpp"
-#include "common/identification/regression/residual_tracing.hpp"
+#include "common/report/text.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
 #include "processes/fathom/regression/regress_json.hpp"
 #include "processes/fathom/regression/regress_page.hpp"
+#include "processes/fathom/regression/regress_trace.hpp"
+#include "processes/fathom/smoothing.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -20,7 +23,8 @@ using identification::AxisRegression;
 using identification::StepwiseResult;
 
 struct RegressOptions {
-  std::string vehicle, write, json, page;
+  TrialFileOptions files;  // of runs that are not smoothed yet
+  std::string map, write, json, page;
   std::vector<std::string> runs;
   std::vector<double> current;
   double rate{10.0};
@@ -92,19 +96,6 @@ void print_quality(const AxisRegression& axis, const std::vector<identification:
   if (runs.size() > 1) line("together", axis.together);
 }
 
-void print_trace(const std::vector<identification::TracedPull>& traced) {
-  std::printf("\nWhence the residual comes: had a force not been measured, and with it subtracted\n");
-  std::printf("%-12s %-5s %11s %11s %14s %14s  %s\n", "force", "axis", "rms without", "with", "phi without", "with",
-              "of the variance without; false terms");
-  for (const auto& one : traced) {
-    std::string gained;
-    for (const std::string& name : one.gained) gained += (gained.empty() ? "; " : ", ") + name;
-    std::printf("%-12s %-5s %11.3g %11.3g %14.3f %14.3f  %.0f %%%s\n", identification::kPulls[one.pull],
-                model::kAxisNames[static_cast<std::size_t>(one.axis)], one.before, one.after, one.phi_before,
-                one.phi_after, 100.0 * one.correlation * one.correlation, gained.c_str());
-  }
-}
-
 std::string coefficients_of(const std::vector<AxisRegression>& axes) {
   std::string text = "# Written by fathom regress.\ncoefficients:\n";
   for (const AxisRegression& axis : axes) {
@@ -118,12 +109,34 @@ std::string coefficients_of(const std::vector<AxisRegression>& axes) {
   return text;
 }
 
+/// A run with SMOOTHED: as it was read, else smoothed first. What a page tells of its motion goes to `motion`.
+Recording with_smoothed(Recording recording, const RegressOptions& options, report::Album& album, std::string& motion) {
+  report::Smoothing smoothing;
+  if (recording.smoothed.empty()) {
+    std::fprintf(stderr, "%s: no SMOOTHED in it; smoothed first, as fathom smooth does\n", recording.name.c_str());
+    auto run = smoothed_run(std::move(recording), options.files, {.filtered = !options.page.empty()}, {});
+    recording = std::move(run.recording);
+    smoothing = smoothing_of(std::move(run.found));
+  }
+  if (!options.page.empty()) motion += report::smoothed_section(recording, smoothing, album);
+  return recording;
+}
+
 void run_regress(const RegressOptions& options) {
-  const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  const model::Vehicle vehicle = model::Vehicle::load(options.files.vehicle);
   std::vector<std::string> notes;
   std::vector<identification::ManoeuvreRows> runs;
-  for (const Recording& recording : read_recordings(options.runs, "", notes, vehicle.dof)) {
+  report::Album album;
+  std::string motion;
+  std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes, vehicle.dof);
+  identification::need_hydrodynamics(vehicle);
+  for (const std::string& note : std::exchange(notes, {})) std::fprintf(stderr, "%s\n", note.c_str());
+  for (Recording& one : recordings) {
+    const Recording recording = with_smoothed(std::move(one), options, album, motion);
     runs.push_back(identification::rows_of(recording, vehicle, options.rate));
+    if (const double unsure = runs.back().unsure; unsure > 0.0)
+      notes.push_back(recording.name + ": " + report::number(unsure, 2) +
+                      " s left out, where the smoother is less than half as sure as mostly: its ends, lost aids");
     if (runs.back().stretches.size() > 1) {
       notes.push_back(recording.name + ": cut at gaps into " + std::to_string(runs.back().stretches.size()) +
                       " stretches");
@@ -156,10 +169,15 @@ void run_regress(const RegressOptions& options) {
     print(axis, runs, vehicle);
     if (!options.table) print_quality(axis, runs);
   }
-  if (options.trace) print_trace(identification::trace_pulls(vehicle, runs, settings));
+  std::vector<identification::TracedPull> traced;
+  if (options.trace || !options.page.empty()) traced = identification::trace_pulls(vehicle, runs, settings);
+  if (options.trace) print_trace(traced);
   if (!options.write.empty()) tables::write_file(options.write, coefficients_of(axes));
   if (!options.json.empty()) tables::write_file(options.json, regression_json(axes, runs, vehicle, settings));
-  if (!options.page.empty()) tables::write_file(options.page, regress_page(axes, runs, vehicle, settings));
+  if (!options.page.empty()) {
+    const std::string more = trace_section(traced, album) + motion;
+    tables::write_file(options.page, album.fill(regress_page(axes, runs, vehicle, settings, more), "gnuplot"));
+  }
 }
 
 }  // namespace
@@ -167,9 +185,15 @@ void run_regress(const RegressOptions& options) {
 void add_regress(runtime::CommandLine& app) {
   auto options = std::make_shared<RegressOptions>();
   runtime::CommandLine* command =
-      app.add_subcommand("regress", "hydrodynamic derivatives from smoothed runs, term by term");
-  command->add_option("runs", options->runs, "logs written by fathom smooth, one per manoeuvre")->required();
-  command->add_option("--vehicle", options->vehicle, "vehicle file (YAML) with hydrodynamics")->required();
+      app.add_subcommand("regress", "hydrodynamic derivatives from recorded runs, term by term");
+  command
+      ->add_option("runs", options->runs, "one per manoeuvre: what fathom smooth wrote, or recordings, smoothed first")
+      ->required();
+  command->add_option("--vehicle", options->files.vehicle, "vehicle file (YAML) with hydrodynamics")->required();
+  command->add_option("--config", options->files.config,
+                      "to smooth by: pipeline file (YAML) with a section estimator; else what the log tells");
+  command->add_option("--site", options->files.site, "to smooth by: site file (YAML) with tags, transponders, floor");
+  command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_flag("--table", options->table, "the tables alone");
   command->add_option("--rate", options->rate, "rows per second")->positive();
   command->add_option("--current", options->current, "north and east velocity of the water [m/s]")->expected(2);
@@ -185,8 +209,9 @@ void add_regress(runtime::CommandLine& app) {
   command->add_option("--thrust-gain", options->thrust_gain, "the same of a thruster's force without a cell")
       ->positive();
   command->add_option("--json", options->json, "write all that is told to this file");
-  command->add_option("--page", options->page,
-                      "HTML file to write: derivatives with their intervals, and how well they explain");
+  command->add_option(
+      "--page", options->page,
+      "HTML file to write: derivatives with their intervals, whence the residual comes, every run drawn");
   command->add_option("--write", options->write, "write the derivatives of all runs together to this YAML file");
   command->callback([options] { run_regress(*options); });
 }

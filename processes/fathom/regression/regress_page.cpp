@@ -10,7 +10,6 @@
 #include "common/model/vehicle.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
-#include "common/report/style.hpp"
 #include "common/report/text.hpp"
 #include "common/samples/estimates.hpp"
 
@@ -118,7 +117,8 @@ std::string axis_section(const AxisRegression& axis, std::span<const identificat
 }  // namespace
 
 std::string regress_page(const std::vector<AxisRegression>& axes, std::span<const identification::ManoeuvreRows> runs,
-                         const model::Vehicle& vehicle, const identification::RegressionSettings& settings) {
+                         const model::Vehicle& vehicle, const identification::RegressionSettings& settings,
+                         const std::string& more) {
   std::string names, tiles;
   for (const auto& run : runs) names += (names.empty() ? "" : ", ") + run.name;
   std::size_t selected = 0, stand = 0;
@@ -131,12 +131,10 @@ std::string regress_page(const std::vector<AxisRegression>& axes, std::span<cons
   }
   const std::string title = "Which derivatives act on " + vehicle.name;
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\"><title>Fathom: " +
-      escape(title) + "</title><style>" + report::kStyle + "</style></head>\n<body><main>\n<header><h1>" +
-      escape(title) + "</h1>\n<p class=\"soft\">Stepwise regression of " + escape(names) + "; forces from " +
-      escape(runs.empty() ? "" : runs.front().known_from) + ".</p>\n<div class=\"badge " +
-      (stand > 0 ? "adequate" : "unexplained") + "\">" + std::to_string(stand) + " of " + std::to_string(selected) +
+      report::page_head(title) + "<header><h1>" + escape(title) + "</h1>\n<p class=\"soft\">Stepwise regression of " +
+      escape(names) + "; forces from " + escape(runs.empty() ? "" : runs.front().known_from) +
+      ".</p>\n<div class=\"badge " + (stand > 0 ? "adequate" : "unexplained") + "\">" + std::to_string(stand) + " of " +
+      std::to_string(selected) +
       " selected derivatives are larger than their errors</div>\n<p class=\"lead\">Dimensionless; intervals hold what "
       "the "
       "residual "
@@ -151,7 +149,7 @@ std::string regress_page(const std::vector<AxisRegression>& axes, std::span<cons
       "them beside "
       "other sets.</p></header>\n";
   for (const AxisRegression& axis : axes) html += axis_section(axis, runs, vehicle);
-  return html + report::version_line() + "</main></body></html>\n";
+  return html + more + report::version_line() + "</main></body></html>\n";
 }
 
 }  // namespace fathom::tool

@@ -10,10 +10,10 @@
 namespace fathom::tool {
 
 /// A complete page, HTML: how many derivatives stand, each with its 95 % interval beside the reference's, and what
-/// would explain as much; manoeuvres one by one and the residuals fold out.
+/// would explain as much; manoeuvres one by one fold out. `more`: sections that follow, with an album's marks.
 [[nodiscard]] std::string regress_page(const std::vector<identification::AxisRegression>& axes,
                                        std::span<const identification::ManoeuvreRows> runs,
                                        const model::Vehicle& vehicle,
-                                       const identification::RegressionSettings& settings);
+                                       const identification::RegressionSettings& settings, const std::string& more);
 
 }  // namespace fathom::tool

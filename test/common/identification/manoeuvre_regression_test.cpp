@@ -1,5 +1,4 @@
-// Derivatives from trials of the half-scale PAP-104: rates over seeds, the water's velocity, what was assumed varied,
-// and what is said of bad input.
+// Derivatives from trials of the half-scale PAP-104: rates over seeds, the water's velocity, what was assumed varied.
 #include "common/identification/regression/manoeuvre_regression.hpp"
 
 #include <doctest/doctest.h>
@@ -289,53 +288,6 @@ TEST_CASE("trials: what the paper does not publish is varied, and what is found 
       const SelectedTerm* found = find(axes, one.first);
       REQUIRE(found != nullptr);
       CHECK(found->value == doctest::Approx(truth_of(a.vehicle).at(one.first)).epsilon(one.second));
-    }
-  }
-}
-
-TEST_CASE("regress: what is wrong with a log is said in one line") {
-  const model::Vehicle vehicle = test::vehicle_from_repository("pap104_half");
-  const auto said = [&](const Recording& recording, double rate) -> std::string {
-    try {
-      static_cast<void>(rows_of(recording, vehicle, rate));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  Recording recording;
-  recording.name = "run";
-  for (int k = 0; k < 500; ++k) {
-    recording.smoothed.push_back({.utime = 1'000'000 + 20'000 * static_cast<Utime>(k)});
-    recording.loads.push_back({.utime = recording.smoothed.back().utime, .load = std::vector<double>(8, 0.0)});
-  }
-  CHECK(said(recording, 10.0).empty());
-  CHECK(said(recording, 0.5) == "run: 5 rows of 2 s; regression needs 20 at least, so a higher --rate or a longer run");
-  auto cells = recording;
-  for (auto& one : cells.loads) one.load.pop_back();
-  CHECK(said(cells, 10.0) == "run: LOADS has 7 cells and the vehicle file 8");
-  auto none = recording;
-  none.loads.clear();
-  CHECK(said(none, 10.0).find("neither LOADS nor forces in THRUSTERS") != std::string::npos);
-}
-
-TEST_CASE("regress: unequal steps are averaged by time, and a gap parts a run into stretches") {
-  const model::Vehicle vehicle = test::vehicle_from_repository("pap104_half");
-  Recording recording;
-  recording.name = "run";
-  for (int k = 0; k < 1000; ++k) {
-    if (k % 7 == 3 || k % 5 == 1 || (k > 400 && k < 460)) continue;
-    SmoothedState state{.utime = 1'000'000 + 20'000 * static_cast<Utime>(k)};
-    state.nu[0] = 0.02 * k;  // m/s: tells the time
-    recording.smoothed.push_back(state);
-    recording.loads.push_back({.utime = state.utime, .load = std::vector<double>(8, 1.0)});
-  }
-  const ManoeuvreRows rows = rows_of(recording, vehicle, 5.0);
-  REQUIRE(rows.stretches.size() == 2);
-  for (const auto& stretch : rows.stretches) {
-    for (std::size_t n = 1; n < stretch.size(); ++n) {
-      CHECK(stretch[n].nu[0] - stretch[n - 1].nu[0] == doctest::Approx(rows.dt).epsilon(0.15));
-      CHECK(stretch[n].known[0] == doctest::Approx(4.0));  // two thrusters, umbilical x, chain x
     }
   }
 }

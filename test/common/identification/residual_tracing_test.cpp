@@ -64,6 +64,21 @@ TEST_CASE("residual tracing: what umbilical and chain leave goes with them, and 
     CHECK(one->phi_before > 0.8);   // a second of memory in rows of 0.1 s is 0.905
     CHECK(std::abs(one->phi_after) < 0.1);
   }
+  const TracedPull& yaw = *find(traced, "umbilical", 5);
+  REQUIRE(yaw.traces.size() == 3);  // line, zigzag, circle
+  double square = 0.0, rows = 0.0;
+  for (std::size_t i = 0; i < yaw.traces.size(); ++i) {
+    const PullTrace& trace = yaw.traces[i];
+    CHECK(trace.run == i);
+    CHECK(trace.dt == kRowEvery);
+    REQUIRE(trace.before.size() == trace.pull.size());
+    REQUIRE(trace.after.size() == trace.pull.size());
+    // What is left without the pull is what is left with it, the pull, and what false terms have taken of it.
+    CHECK((trace.before - trace.after - trace.pull).norm() < 0.5 * trace.pull.norm());
+    square += trace.before.squaredNorm();
+    rows += static_cast<double>(trace.before.size());
+  }
+  CHECK(std::sqrt(square / rows) == doctest::Approx(yaw.before));
   const TracedPull* heave = find(traced, "chain", 2);
   REQUIRE(heave != nullptr);
   CHECK(heave->before > 10.0 * heave->after);  // it holds the height

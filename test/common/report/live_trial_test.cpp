@@ -249,7 +249,13 @@ TEST_CASE("live trial: a log without STATE is refused; without supervisor or ide
     CHECK(result.parameters.empty() == ((lacking & 2) != 0));
     for (const std::string& text : {to_table(result), to_html(result, recording, vehicle(), site())})
       CHECK((text.find("no EXCITATION") != std::string::npos) == ((lacking & 1) != 0));
-    const bool recorded = to_html(result, recording, vehicle(), site()).find("A recorded run") != std::string::npos;
+    const std::string page = to_html(result, recording, vehicle(), site());
+    const bool recorded = page.find("A recorded run") != std::string::npos;
+    // What the log does not hold has no table and no number of its own.
+    CHECK((page.find("What was flown") == std::string::npos) == ((lacking & 1) != 0));
+    CHECK((page.find("modes settled") == std::string::npos) == ((lacking & 1) != 0));
+    CHECK((page.find("The vehicle's numbers") == std::string::npos) == ((lacking & 2) != 0));
+    CHECK((to_table(result).find("Identified") == std::string::npos) == ((lacking & 2) != 0));
     CHECK(recorded == ((lacking & 1) != 0));
   }
 }

@@ -36,10 +36,11 @@ std::size_t count(const std::string& text, const std::string& what) {
 TEST_CASE(
     "smoothed run drawn: six figures, V a quarter of a turn ahead of U, and centripetal against body acceleration") {
   const Recording recording = circle();
-  std::vector<StateEstimate> filtered;
+  Smoothing smoothing{.inclinometer_used = false};
   for (const SmoothedState& one : recording.smoothed)
-    filtered.push_back({.utime = one.utime, .p_WB = one.p_WB + Eigen::Vector3d{0.05, 0.0, 0.0}, .q_WB = one.q_WB});
-  const std::string page = smoothed_page(recording, filtered, false);
+    smoothing.filtered.push_back(
+        {.utime = one.utime, .p_WB = one.p_WB + Eigen::Vector3d{0.05, 0.0, 0.0}, .q_WB = one.q_WB});
+  const std::string page = smoothed_page(recording, smoothing);
   CHECK(count(page, "<svg") == 6);
   CHECK(count(page, "<figcaption>") == 6);
   CHECK(page.find("a &lt; b") != std::string::npos);
@@ -51,7 +52,20 @@ TEST_CASE(
   CHECK(page.find("Its mean is 0.0000 m/s^2, that of the inertial y acceleration -0.0500") != std::string::npos);
   CHECK(page.find("which the filter never saw; rms apart from the smoother 0.0000 rad") != std::string::npos);
   CHECK(page.find("dashed truth") == std::string::npos);
-  CHECK(smoothed_figures(recording, filtered, true).find("which the filter used") != std::string::npos);
+  CHECK(page.find("How its instruments fared") == std::string::npos);  // nobody has told
+
+  smoothing.inclinometer_used = true;
+  smoothing.instruments = {{.name = "gyro", .used = 40, .refused = 2, .nis_sum = 44.0}, {.name = "not there"}};
+  Album album;
+  const std::string section = smoothed_section(recording, smoothing, album);
+  CHECK(section.find("which the filter used") != std::string::npos);
+  CHECK(section.find("<td>gyro</td><td class=\"n\">40</td><td class=\"n\">2</td><td class=\"n\">0</td><td "
+                     "class=\"n\">1.10</td>") != std::string::npos);
+  CHECK(section.find("not there") == std::string::npos);
+  CHECK(section.find("Position within ") != std::string::npos);
+  const std::string before = smoothed_section(recording, {}, album);  // by another program: no filter beside it
+  CHECK(before.find("crosses") == std::string::npos);
+  CHECK(before.find("4. The pitch inclinometer; rms apart") != std::string::npos);
 }
 
 }  // namespace fathom::report
