@@ -9,8 +9,8 @@
 namespace fathom::identification {
 namespace {
 
-// As large as the largest that Pereira and Duncan's planar motion tests gave, forces and moments apart (Tables 1 to 6).
-// 6).
+// Of every term, selected or not: as large as the largest that Pereira and Duncan's planar motion tests gave, forces
+// and moments apart (Tables 1 to 6). A selected one that came out several times as large has taken something else in.
 constexpr double kForcePrior = 0.3, kMomentPrior = 0.02;
 constexpr double kWander = 6.0;      // s between knots of a velocity's error: what ranges of every second leave
 constexpr double kAsGood = 2.0;      // natural logarithm of the likelihoods' ratio: seven to one tells nothing apart
@@ -154,11 +154,11 @@ void add_term_errors(const model::Vehicle& vehicle, std::span<const ManoeuvreRow
   const ErrorColumns errors{runs, axis, candidates, vehicle, settings, result.terms};
   Normal normal{errors.gram(runs).whitened(result.phi), {}};
   for (const SelectedTerm& term : result.terms) normal.in.push_back(term.column);
-  // Unknowns: selected terms first, of which nothing is known beforehand; then the other terms and the lasting errors.
+  // Unknowns: selected terms first; then the other terms and the lasting errors.
   const auto terms = static_cast<int>(candidates.terms.size());
   const double prior = axis >= 3 ? kMomentPrior : kForcePrior;
   std::vector<int> all = normal.in;
-  std::vector<double> known(normal.in.size(), 0.0);  // precisions
+  std::vector<double> known(normal.in.size(), 1.0 / (prior * prior));  // precisions
   for (int j = 0; j < static_cast<int>(normal.b()); ++j) {
     if (std::ranges::find(normal.in, j) != normal.in.end() || !(normal.G(j, j) > 0.0)) continue;
     all.push_back(j);

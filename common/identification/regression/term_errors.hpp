@@ -12,9 +12,9 @@ namespace fathom::identification {
 ///
 /// Unseen: b = S x_S + U x_U + D d + e, with the selected terms S, the others U, and what lasting errors d of one
 /// standard deviation each do to the residual, D: the gain of each load cell or thruster (the same in all runs), roll,
-/// pitch and velocity of each run by what SMOOTHED says of itself. Of x_S nothing is known beforehand; x_U is no larger
-/// than such derivatives are, and d is one (normal priors). Least squares on S alone are off by what the posterior of
-/// all three says: its variance, and the square of the distance between its mean and theirs.
+/// pitch and velocity of each run by what SMOOTHED says of itself. Neither x_S nor x_U is larger than such derivatives
+/// are, and d is one (normal priors). Least squares on S alone are off by what the posterior of all three says: its
+/// variance, and the square of the distance between its mean and theirs.
 ///
 /// Equivalents: columns that in the term's place leave no more than what chance makes of it.
 void add_term_errors(const model::Vehicle& vehicle, std::span<const ManoeuvreRows> runs, int axis,

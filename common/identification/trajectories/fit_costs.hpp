@@ -1,7 +1,10 @@
 // What the output-error fit hands to Ceres: the residuals of all windows, axis by axis, and the priors.
 #pragma once
 
+// Its logging defines CHECK anew, which in a test that reads this later is doctest's.
+#pragma push_macro("CHECK")
 #include <ceres/ceres.h>
+#pragma pop_macro("CHECK")
 
 #include <span>
 #include <vector>
