@@ -9,6 +9,7 @@
 
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
+#include "test/support/timing.hpp"
 
 namespace fathom::test {
 
@@ -20,7 +21,7 @@ inline bool live_network() {
 
 /// The command; its folder is `out` in the scratch folder.
 inline std::string live(const Scratch& scratch, const std::string& words) {
-  return "FATHOM_BIN='" + std::string{FATHOM_BINARY_DIR} + "/bin' env --default-signal=INT timeout 120 " +
+  return "FATHOM_BIN='" + std::string{FATHOM_BINARY_DIR} + "/bin' env --default-signal=INT " + limit(120) +
          file("scripts/live") + " '" + scratch.path("out") + "' " + words;
 }
 

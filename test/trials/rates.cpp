@@ -230,9 +230,9 @@ void recovery(int seeds, double cell_gain) {
         standing += term.stands() ? 1 : 0;
         standing_false += term.stands() && acts == truth.end() ? 1 : 0;
         if (std::getenv("FATHOM_TRIALS_TERMS") != nullptr)
-          std::printf("seed %d %-8s %9.4f truth %9.4f scatter %.4f unseen %.4f %s\n", seed, name.c_str(), term.value,
+          std::printf("seed %d %-8s %9.4f truth %9.4f scatter %.4f unseen %.4f %s%s\n", seed, name.c_str(), term.value,
                       acts == truth.end() ? 0.0 : acts->second, term.sigma, term.unseen,
-                      term.stands() ? "" : "may be none");
+                      term.stands() ? "" : "may be none", term.equivalents.empty() ? "" : ", or others");
         if (acts == truth.end()) {
           ++rates.false_ones;
           ++rates.hits[name];
@@ -254,7 +254,7 @@ void recovery(int seeds, double cell_gain) {
   const auto share = [](int part, int whole) { return 100.0 * part / std::max(whole, 1); };
   std::printf(
       "\n%d terms selected, %d of them act; 95 %% intervals hold the truth in %.0f %% (by scatter alone %.0f %%), "
-      "rms of error over stated %.2f; %d stand beyond their errors, %.1f %% of these do not act (%.1f %% of what "
+      "rms of error over stated %.2f; %d stand, %.1f %% of these do not act (%.1f %% of what "
       "does not act)\n",
       selected, acting, share(covered, selected), share(covered_white, selected),
       std::sqrt(squares / std::max(selected, 1)), standing, share(standing_false, standing),

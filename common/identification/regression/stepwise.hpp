@@ -34,8 +34,10 @@ struct SelectedTerm {
   double unseen{};                 ///< instruments that are off all the time, and terms that act and were not selected
   std::vector<int> equivalents{};  ///< columns that would explain as much in its place
   [[nodiscard]] double total() const { return std::hypot(sigma, unseen); }
-  /// Whether the value is more than its errors together, at 95 %: else an instrument or another term may be all of it.
-  [[nodiscard]] bool stands() const { return std::abs(value) > 1.96 * total(); }
+  /// Whether the value is more than its errors together, at 95 %: else an instrument may be all of it.
+  [[nodiscard]] bool beyond_errors() const { return std::abs(value) > 1.96 * total(); }
+  /// What may be said to act: beyond its errors, and nothing else would explain as much.
+  [[nodiscard]] bool stands() const { return beyond_errors() && equivalents.empty(); }
   /// Standard error as Pereira and Duncan print it.
   [[nodiscard]] double percent() const { return value != 0.0 ? 100.0 * total() / std::abs(value) : 0.0; }
 };

@@ -46,9 +46,10 @@ std::string cell(const StepwiseResult& result, int column) {
 
 void print(const AxisRegression& axis, const std::vector<identification::ManoeuvreRows>& runs,
            const model::Vehicle& vehicle) {
-  std::printf("\n%s (%s): dimensionless, standard error in per cent, * most significant, ? within its errors\n%-10s",
-              model::kAxisNames[static_cast<std::size_t>(axis.axis)], kMotionNames[static_cast<std::size_t>(axis.axis)],
-              "");
+  std::printf(
+      "\n%s (%s): dimensionless, standard error in per cent, * most significant, ? within its errors, or another would "
+      "do\n%-10s",
+      model::kAxisNames[static_cast<std::size_t>(axis.axis)], kMotionNames[static_cast<std::size_t>(axis.axis)], "");
   for (const auto& run : runs) std::printf(" | %17.17s", run.name.c_str());
   if (runs.size() > 1) std::printf(" | %17s", "together");
   std::printf(" | %17s\n", "reference");

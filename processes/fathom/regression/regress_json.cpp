@@ -23,6 +23,7 @@ Json of(const identification::StepwiseResult& result, const identification::Axis
                      {"value", term.value},
                      {"std", term.total()},
                      {"std_of_scatter", term.sigma},
+                     {"beyond_errors", term.beyond_errors()},
                      {"stands", term.stands()},
                      {"equivalents", equivalents(term)},
                      {"f", term.f},

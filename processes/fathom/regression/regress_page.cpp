@@ -61,7 +61,7 @@ std::string row_of(const AxisRegression& axis, const SelectedTerm& term, bool st
   const std::string name = escape(name_of(axis, term.column));
   return "<tr>" + cell(strongest ? "<b>" + name + "</b>" : name) + cell(plus_minus(term.value, term.total()), "n") +
          cell(known ? plus_minus(known->first, known->second) : "-", "n") +
-         cell(report::whiskers(bars, low, high, 0.0)) + cell(term.stands() ? "larger" : "within them") +
+         cell(report::whiskers(bars, low, high, 0.0)) + cell(term.beyond_errors() ? "larger" : "within them") +
          cell(escape(as_well)) + "</tr>\n";
 }
 
@@ -135,10 +135,10 @@ std::string regress_page(const std::vector<AxisRegression>& axes, std::span<cons
       escape(names) + "; forces from " + escape(runs.empty() ? "" : runs.front().known_from) +
       ".</p>\n<div class=\"badge " + (stand > 0 ? "adequate" : "unexplained") + "\">" + std::to_string(stand) + " of " +
       std::to_string(selected) +
-      " selected derivatives are larger than their errors</div>\n<p class=\"lead\">Dimensionless; intervals hold what "
-      "the "
-      "residual "
-      "scatters, what instruments and reconstruction may be off by, and terms that act and were not selected.</p>\n"
+      " selected derivatives stand</div>\n<p class=\"lead\">Those that stand are larger than their "
+      "errors, at 95 %, and no other term would explain as much. Dimensionless; intervals hold what the "
+      "residual scatters, what instruments and reconstruction may be off by, and terms that act and were "
+      "not selected.</p>\n"
       "<div class=\"tiles\">" +
       tiles + "</div>\n";
   if (!settings.v_WF.isZero(0.0))

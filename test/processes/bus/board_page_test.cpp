@@ -12,6 +12,7 @@
 #include "common/wire/minds.hpp"
 #include "test/support/board.hpp"
 #include "test/support/orders.hpp"
+#include "test/support/timing.hpp"
 
 namespace fathom {
 namespace {
@@ -206,7 +207,7 @@ TEST_CASE("board: a browser draws all of it, wide and on a phone, and its consol
   for (const char* size : {"1400,1200", "400,900"}) {
     CAPTURE(size);
     const auto look = [&] {
-      return shell("timeout 100 '" + browser.substr(0, browser.find('\n')) +
+      return shell(test::limit(100) + "'" + browser.substr(0, browser.find('\n')) +
                    "' --headless --no-sandbox --disable-gpu --user-data-dir='" + scratch.path("browser") +
                    "' --enable-logging=stderr --window-size=" + size +
                    " --virtual-time-budget=4000 --dump-dom http://127.0.0.1:" + std::to_string(board.port) + "/ 2>&1");

@@ -16,6 +16,7 @@
 #include "test/support/channels.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
+#include "test/support/timing.hpp"
 #include "test/support/wire_data.hpp"
 
 namespace fathom {
@@ -147,11 +148,12 @@ TEST_CASE("drivers: emulator, line, driver, LCM: the same samples as the parser 
     const std::string tcp = std::to_string(port + static_cast<int>(i));
     configure(chain, chain.tcp ? "tcp://127.0.0.1:" + tcp : "serial://" + base + ".tty?baud=115200", base + ".yaml",
               base + ".raw");
-    script += program("fathom") + " emulate " + chain.protocol + " --seconds 4 --rate " +
-              std::to_string(static_cast<int>(1.0 / chain.period)) + " --to " +
+    script += program("fathom") + " emulate " + chain.protocol + " --seconds " + std::to_string(4 * test::kPatience) +
+              " --rate " + std::to_string(static_cast<int>(1.0 / chain.period)) + " --to " +
               (chain.tcp ? "tcp:" + tcp : "pty:" + base + ".tty") + " --sent " + base + ".sent > " + base +
-              ".emulator &\nsleep 0.05\ntimeout -s INT 6 " + program(chain.driver) + " --log-level warning --config " +
-              base + ".yaml --out file://" + base + ".lcmlog > " + base + ".text 2>&1 &\n";
+              ".emulator &\nsleep 0.05\ntimeout -s INT " + std::to_string(6 * test::kPatience) + " " +
+              program(chain.driver) + " --log-level warning --config " + base + ".yaml --out file://" + base +
+              ".lcmlog > " + base + ".text 2>&1 &\n";
   }
   CHECK(shell(script + "wait").code == 0);
   for (const Chain& chain : chains()) {

@@ -40,9 +40,9 @@ std::string pilot() { return std::string{"'"} + FATHOM_BINARY_DIR + "/test/test_
 
 /// Runs a script on a network of its own. Each line ends in its own time; `wait` collects what went to the background.
 Ran on_private_network(const std::string& script) {
-  return shell(
-      "timeout 60 unshare -rn sh -c \"ip link set lo up; ip route add 224.0.0.0/4 dev lo; export LCM_DEFAULT_URL='" +
-      kBus + "'\n" + script + "\"");
+  return shell(test::limit(60) +
+               "unshare -rn sh -c \"ip link set lo up; ip route add 224.0.0.0/4 dev lo; export LCM_DEFAULT_URL='" +
+               kBus + "'\n" + script + "\"");
 }
 
 /// A whole run with a pilot: in lockstep recorded by our own recorder, in real time by lcm-logger.

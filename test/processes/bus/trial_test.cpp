@@ -9,6 +9,7 @@
 #include "common/wire/log_reader.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
+#include "test/support/timing.hpp"
 
 namespace fathom {
 namespace {
@@ -44,7 +45,7 @@ test::Ran trial(const Scratch& scratch, const std::string& log, const std::strin
             file("config/simulation/seabotix_lbv150.yaml") + " --config " + file("config/operators/simulated.yaml") +
             " --speed 0 --wait-for estimator,identifier,supervisor,recorder " + options +
             "\ncode=\\$?\nwait\nexit \\$code";
-  return shell("timeout 60 unshare -rn sh -c \"" + script + "\"");
+  return shell(test::limit(60) + "unshare -rn sh -c \"" + script + "\"");
 }
 
 std::vector<std::string> messages(const std::string& path, const std::string& channel) {
@@ -125,13 +126,14 @@ TEST_CASE("trial: a replayed log does not arm, and its orders are named") {
   const std::string config = scratch.path("dry.yaml");
   test::shell("printf 'thruster_driver:\\n  protocol: dry_run\\n  rate: 20 Hz\\n  largest_thrust: 13 N\\n' > " +
               config);
-  const auto replayed = shell(
-      "timeout 30 unshare -rn sh -c \"ip link set lo up; ip route add 224.0.0.0/4 dev lo; "
-      "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'\n" +
-      program("thruster_driver") + " --config " + config + " --config " + file("config/vehicles/bluerov2.yaml") +
-      " --config " + file("config/operators/simulated.yaml") + " & driver=\\$!\nfor i in 1 2 3 4 5 6 7 8; do " +
-      program("fathom") + " status | grep -q thruster_driver && break; done\nlcm-logplayer --speed=4 " +
-      scratch.path("run.lcmlog") + " >/dev/null 2>&1\n" + program("fathom") + " status\nkill \\$driver\nwait\"");
+  const auto replayed =
+      shell(test::limit(30) +
+            "unshare -rn sh -c \"ip link set lo up; ip route add 224.0.0.0/4 dev lo; "
+            "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'\n" +
+            program("thruster_driver") + " --config " + config + " --config " + file("config/vehicles/bluerov2.yaml") +
+            " --config " + file("config/operators/simulated.yaml") + " & driver=\\$!\nfor i in 1 2 3 4 5 6 7 8; do " +
+            program("fathom") + " status | grep -q thruster_driver && break; done\nlcm-logplayer --speed=4 " +
+            scratch.path("run.lcmlog") + " >/dev/null 2>&1\n" + program("fathom") + " status\nkill \\$driver\nwait\"");
   CHECK_MESSAGE(replayed.says("orders refused 1 (a replay: "), replayed.text);
   CHECK_MESSAGE(replayed.says("zero thrust: not armed"), replayed.text);
 }

@@ -13,6 +13,7 @@
 #include "test/support/channels.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
+#include "test/support/timing.hpp"
 
 namespace fathom {
 namespace {
@@ -202,7 +203,7 @@ TEST_CASE("vision: in a simulated tank the estimator flies by rendered pictures 
       program("recorder") + " --lockstep --file " + scratch.path("run.lcmlog") + " &\n" + program("simulator") + all +
       " --config " + file("config/simulation/seabotix_lbv150.yaml") +
       " --camera --speed 0 --duration 8 --seed 3 --wait-for vision,estimator,recorder\ncode=\\$?\nwait\nexit \\$code";
-  const auto ran = shell("timeout 120 unshare -rn sh -c \"" + script + "\"");
+  const auto ran = shell(test::limit(120) + "unshare -rn sh -c \"" + script + "\"");
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
   const Recording run = wire::read_log(scratch.path("run.lcmlog")).recording;
   CHECK(run.tag_pose.size() > 400);

@@ -12,6 +12,7 @@
 #include "test/support/diagnosis_fixture.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
+#include "test/support/timing.hpp"
 #include "test/support/virtual_dive.hpp"
 
 namespace fathom {
@@ -78,7 +79,7 @@ TEST_CASE("fathom: every --help ends with an example, and it runs") {
     const std::string example = last_line(shell(kTool + " " + name + " --help").text);
     const std::string begin = "Example: fathom ";
     REQUIRE(example.starts_with(begin + name));
-    const std::string limit = kComplete.contains(name) ? "timeout 60 " : "timeout 2 ";
+    const std::string limit = test::limit(kComplete.contains(name) ? 60 : 2);
     const Ran ran =
         shell("cd '" + scratch.path("") + "' && " + kBus + " " + limit + kTool + " " + example.substr(begin.size()));
     CAPTURE(example);
