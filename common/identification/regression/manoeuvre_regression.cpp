@@ -6,6 +6,7 @@
 
 #include "common/identification/regression/term_errors.hpp"
 #include "common/model/derivative_motion.hpp"
+#include "common/model/manoeuvres.hpp"
 
 namespace fathom::identification {
 

@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/base/statistics.hpp"
 #include "common/identification/known_signals.hpp"
-#include "common/model/manoeuvres.hpp"
+#include "common/model/derivative_motion.hpp"
 
 namespace fathom::identification {
 namespace {
