@@ -49,7 +49,9 @@ int main(int argc, char** argv) {
     } else if (what == "selection") {
       selection(number(2, 50));
     } else if (what == "recovery") {
-      for (const double cell_gain : {0.03, 0.0}) recovery(number(2, 50), cell_gain);
+      for (const bool exact_motion : {true, false}) {
+        for (const double cell_gain : {0.03, 0.0}) recovery(number(2, 50), cell_gain, exact_motion);
+      }
     } else if (what == "dives" && argc > 2) {
       record_dives(argv[2], number(3, 3));
     } else {

@@ -196,7 +196,7 @@ void selection(int seeds) {
 
 // From the recorded instruments to the derivatives: ranges, gains of load cells and the umbilical's force are all
 // there.
-void recovery(int seeds, double cell_gain) {
+void recovery(int seeds, double cell_gain, bool exact_motion) {
   const Setup base = setup();
   std::map<std::string, double> truth;
   for (const auto& one : base.vehicle.hydrodynamics->coefficients) truth[std::string{one.term->name}] = one.value;
@@ -211,8 +211,16 @@ void recovery(int seeds, double cell_gain) {
       auto trial =
           test::record_trial(base.vehicle, base.instruments,
                              {.manoeuvre = model::manoeuvre_preset(name), .seed = number, .cell_gain = cell_gain});
-      const auto instruments = estimation::tune_process(trial.recording, base.instruments);
-      trial.recording.smoothed = estimation::smooth(trial.recording, instruments).smoothed;
+      if (exact_motion) {
+        for (std::size_t k = 0; k < trial.flight.size(); ++k) {
+          const model::FlightMoment& m = trial.flight[k];
+          trial.recording.smoothed.push_back(
+              {.utime = trial.recording.ahrs[k].utime, .p_WB = m.p_WB, .q_WB = m.q_WB, .nu = m.nu, .nu_dot = m.nu_dot});
+        }
+      } else {
+        const auto instruments = estimation::tune_process(trial.recording, base.instruments);
+        trial.recording.smoothed = estimation::smooth(trial.recording, instruments).smoothed;
+      }
       runs.push_back(identification::rows_of(trial.recording, base.vehicle, 10.0));
     }
     for (const auto& axis : identification::regress(base.vehicle, runs, {})) {
@@ -242,7 +250,8 @@ void recovery(int seeds, double cell_gain) {
       }
     }
   }
-  std::printf("gains of load cells wrong by %.0f %%:\n", 100.0 * cell_gain);
+  std::printf("gains of load cells wrong by %.0f %%, motion %s:\n", 100.0 * cell_gain,
+              exact_motion ? "exact" : "reconstructed");
   for (auto& [name, all] : errors) {
     std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
     std::printf("%-8s selected %3.0f %%, median error %.0f %%\n", name.c_str(),

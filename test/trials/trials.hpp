@@ -26,7 +26,8 @@ void variations();
 /// squares.
 void selection(int seeds);
 /// How often every derivative is found, and how well, from what the instruments recorded; load cells have wrong gains.
-void recovery(int seeds, double cell_gain);
+/// `exact_motion`: as if the smoother erred nowhere, which shows what the forces alone leave unknown.
+void recovery(int seeds, double cell_gain, bool exact_motion);
 /// dive-1.lcmlog ...: simulated dives for `fathom methods --truth`.
 void record_dives(const std::string& folder, int seeds);
 

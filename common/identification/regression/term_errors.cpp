@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/base/factors.hpp"
 #include "common/base/spatial.hpp"
@@ -12,7 +13,8 @@ namespace {
 // Of every term, selected or not: as large as the largest that Pereira and Duncan's planar motion tests gave, forces
 // and moments apart (Tables 1 to 6). A selected one that came out several times as large has taken something else in.
 constexpr double kForcePrior = 0.3, kMomentPrior = 0.02;
-constexpr double kWander = 6.0;      // s between knots of a velocity's error: what ranges of every second leave
+constexpr double kWander = 6.0;  // s between knots of a velocity's error: what ranges of every second leave
+constexpr double kHalf = std::numbers::sqrt2 / 2.0;  // of a gain's std: half of its variance lasts, half is of one run
 constexpr double kAsGood = 2.0;      // natural logarithm of the likelihoods' ratio: seven to one tells nothing apart
 constexpr double kCollinear = 1e-8;  // share of a column's square below which it is rounding
 
@@ -31,8 +33,8 @@ struct Normal {
 };
 
 /// What one standard deviation of each error of instruments and reconstruction does to the residual that the terms
-/// leave, a column each: gains, the same in all runs; then of each run roll and pitch, and a velocity that wanders, by
-/// its values at knots with straight lines between.
+/// leave, a column each: of the gains what lasts through all runs; then of each run the rest of its gains, roll and
+/// pitch, and a velocity that wanders, by its values at knots with straight lines between.
 class ErrorColumns {
  public:
   ErrorColumns(std::span<const ManoeuvreRows> runs, int axis, const AxisCandidates& candidates,
@@ -52,7 +54,7 @@ class ErrorColumns {
       std::size_t rows = 0;
       for (const auto& stretch : run.stretches) rows += stretch.size();
       knots_.push_back(2 + static_cast<Eigen::Index>(static_cast<double>(rows) * run.dt / kWander));
-      columns_ += 2 + 3 * knots_.back();
+      columns_ += static_cast<Eigen::Index>(parts_) + 2 + 3 * knots_.back();
     }
   }
 
@@ -89,12 +91,13 @@ class ErrorColumns {
     wide.col(m + columns_) = z.col(m);
     const Eigen::VectorXd before = z * residual_;
     for (std::size_t i = 0; i < parts_; ++i) {
-      const double gain = i < run.cells ? settings_.cell_gain : settings_.thrust_gain;
-      wide.col(m + static_cast<Eigen::Index>(i)) = moved(stretch, before, [&](ManoeuvreRows::Row& row) {
+      const double gain = kHalf * (i < run.cells ? settings_.cell_gain : settings_.thrust_gain);
+      const auto column = static_cast<Eigen::Index>(i);
+      wide.col(m + first_[r] + column) = wide.col(m + column) = moved(stretch, before, [&](ManoeuvreRows::Row& row) {
         if (i < row.parts.size()) row.known += gain * row.parts[i];
       });
     }
-    const Eigen::Index first = m + first_[r], knots = knots_[r];
+    const Eigen::Index first = m + first_[r] + static_cast<Eigen::Index>(parts_), knots = knots_[r];
     for (Eigen::Index i = 0; i < 2; ++i) {
       const Eigen::Quaterniond turn = quaternion_from_rotation_vector(run.sigma_attitude[i] * Eigen::Vector3d::Unit(i));
       wide.col(first + i) = moved(stretch, before, [&](ManoeuvreRows::Row& row) { row.q_WB = row.q_WB * turn; });

@@ -11,8 +11,9 @@ namespace fathom::identification {
 /// Fills SelectedTerm::unseen and equivalents of `result`, which was fitted to `runs`.
 ///
 /// Unseen: b = S x_S + U x_U + D d + e, with the selected terms S, the others U, and what lasting errors d of one
-/// standard deviation each do to the residual, D: the gain of each load cell or thruster (the same in all runs), roll,
-/// pitch and velocity of each run by what SMOOTHED says of itself. Neither x_S nor x_U is larger than such derivatives
+/// standard deviation each do to the residual, D: the gain of each load cell or thruster (half of its variance the same
+/// in all runs, half each run's own, since nobody says whether cells were set anew between them), roll, pitch and
+/// velocity of each run by what SMOOTHED says of itself. Neither x_S nor x_U is larger than such derivatives
 /// are, and d is one (normal priors). Least squares on S alone are off by what the posterior of all three says: its
 /// variance, and the square of the distance between its mean and theirs.
 ///
