@@ -96,9 +96,8 @@ std::string instruments_of(const std::vector<estimation::InnovationStatistics>& 
   if (rows.empty()) return "";
   return "<details><summary>How its instruments fared</summary>\n<table>" +
          heading_cells({"instrument", "used", "refused", "not heard", "NIS"}, {1, 2, 3, 4}) + rows +
-         "</table>\n<p class=\"soft small\">NIS: innovations squared over what is stated of them; 1 where the noise is "
-         "as "
-         "stated.</p></details>\n";
+         "</table>\n<p class=\"soft small\">NIS: innovations squared over what is stated of them; 1 where "
+         "the noise is as stated.</p></details>\n";
 }
 
 /// "Position within .. m, velocity within .. m/s".

@@ -36,11 +36,6 @@ void print(const Recording& recording, const estimation::Reconstruction& found) 
     std::printf("%-18s %9lld %9lld %9lld %8.3f\n", one.name.c_str(), static_cast<long long>(one.used),
                 static_cast<long long>(one.refused), static_cast<long long>(one.dropped), one.nis());
   }
-  for (const estimation::InnovationStatistics& one : trial.statistics) {
-    if (refused_share(one) <= kMostRefused) continue;
-    std::printf("%s: %.0f %% refused; its noise is stated too small, or it contradicts the others (fathom check)\n",
-                one.name.c_str(), 100.0 * refused_share(one));
-  }
   Eigen::Vector3d early = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (std::size_t k = 0; k < smoothed.size(); ++k) {

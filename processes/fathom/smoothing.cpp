@@ -13,6 +13,13 @@
 namespace fathom::tool {
 namespace {
 
+constexpr double kMostRefused = 0.2;  // of an instrument's numbers: more are no outliers
+
+double refused_share(const estimation::InnovationStatistics& one) {
+  const auto refused = static_cast<double>(one.refused), all = static_cast<double>(one.used + one.refused);
+  return all > 0.0 ? refused / all : 0.0;
+}
+
 /// Share of an instrument's numbers that was refused, of the one that most of was.
 double most_refused(const estimation::SmoothedTrial& trial) {
   double most = 0.0;
@@ -57,11 +64,6 @@ estimation::Reconstruction reconstructed(const Recording& recording, const estim
 
 }  // namespace
 
-double refused_share(const estimation::InnovationStatistics& one) {
-  const auto refused = static_cast<double>(one.refused), all = static_cast<double>(one.used + one.refused);
-  return all > 0.0 ? refused / all : 0.0;
-}
-
 SmoothedRun smoothed_run(Recording recording, const TrialFileOptions& named,
                          const estimation::ReconstructionOptions& asked, std::vector<std::string> notes) {
   const estimation::TrialFiles files = trial_files(named, recording, notes);
@@ -73,6 +75,11 @@ SmoothedRun smoothed_run(Recording recording, const TrialFileOptions& named,
   tell();
   try {
     estimation::Reconstruction found = reconstructed(recording, files, asked, notes, line.progress());
+    for (const estimation::InnovationStatistics& one : found.trial.statistics) {
+      if (const double share = refused_share(one); share > kMostRefused)
+        notes.push_back(recording.name + ": " + one.name + ": " + report::percent(share) +
+                        " refused; its noise is stated too small, or it contradicts the others (fathom check)");
+    }
     tell();
     recording.state.clear();
     recording.smoothed = std::move(found.trial.smoothed);

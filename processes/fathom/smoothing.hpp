@@ -11,9 +11,6 @@
 
 namespace fathom::tool {
 
-inline constexpr double kMostRefused = 0.2;  ///< of an instrument's numbers: more are no outliers
-[[nodiscard]] double refused_share(const estimation::InnovationStatistics& instrument);
-
 struct SmoothedRun {
   Recording recording;               ///< with SMOOTHED, without the log's own STATE
   estimation::Reconstruction found;  ///< but for the smoothed states, which stand in `recording`
@@ -21,7 +18,8 @@ struct SmoothedRun {
 
 /// As recorded. Where the instruments contradict each other, so that this is refused or refuses more of one than
 /// outliers are, once more with what the comparison of sensors corrects: axes, clocks, scales. Says on stderr what it
-/// does, how far it is, and `notes`. InputError as estimation::reconstruct_state.
+/// does, how far it is, `notes`, and of which instrument more was refused than outliers are. InputError as
+/// estimation::reconstruct_state.
 [[nodiscard]] SmoothedRun smoothed_run(Recording recording, const TrialFileOptions& files,
                                        const estimation::ReconstructionOptions& asked, std::vector<std::string> notes);
 /// For a page. The filter's states are moved out of `found`.

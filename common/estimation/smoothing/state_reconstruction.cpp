@@ -31,7 +31,7 @@ void refuse_without_position(const Recording& recording, const KalmanSettings& s
   }
   if (!why.empty()) why += ")";
   throw InputError(recording.name + ": nothing that is known tells the position" + why +
-                   "; --without-position reconstructs velocity and attitude alone");
+                   "; fathom smooth --without-position reconstructs velocity and attitude alone");
 }
 
 void refuse_contradictions(const std::string& name, const SmoothedTrial& trial) {
@@ -58,7 +58,7 @@ void refuse_unsure(const std::string& name, const SmoothedTrial& trial, bool wit
   };
   if (!without_position && unsure(0, kLargestPosition)) {
     throw InputError(name + text(": the position is known to no better than %.0f m over most of the run: too little "
-                                 "tells it; --without-position reconstructs velocity and attitude alone",
+                                 "tells it; fathom smooth --without-position reconstructs velocity and attitude alone",
                                  kLargestPosition));
   }
   if (!without_position && unsure(6, kLargestVelocity)) {
@@ -96,7 +96,7 @@ void refuse_against_state(const Recording& recording, const SmoothedTrial& trial
     if (found.ratio <= kContradicts || found.distance <= kNoContradiction) return;
     throw InputError(recording.name + ": the smoothed " + what + " lies " + text("%.3g ", found.distance) + unit +
                      text(" from the log's own STATE, %.0f times what both say of themselves; one of them is wrong "
-                          "(--despite-state: it is STATE)",
+                          "(fathom smooth --despite-state: it is STATE)",
                           found.ratio));
   };
   if (!without_position) check("position", "m", apart(recording, trial, 0));

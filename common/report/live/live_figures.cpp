@@ -89,13 +89,18 @@ std::string y_range(const Polyline& line) {
 
 /// Tics of a plan whose axes have one scale: where the path is long and narrow, gnuplot's own choice for the short axis
 /// would write one number over the other.
-std::string plan_tics(std::span<const StateEstimate> states) {
+std::string plan_tics(std::span<const StateEstimate> states, std::span<const AidCurve> aids) {
   constexpr double kWide = 480.0, kHigh = 300.0;  // px that the axes have
   constexpr double kApart = 50.0, kBelow = 22.0;  // px that a number needs, along x and along y
   constexpr double kUsual = 6.0;                  // tics that gnuplot chooses about
   Eigen::AlignedBox2d box;
   for (const StateEstimate& one : states) {
     if (one.valid) box.extend(Eigen::Vector2d{one.p_WB.head<2>()});
+  }
+  for (const AidCurve& aid : aids) {
+    for (const Eigen::Vector3d& x : aid.seen->x) {
+      if (x.head<2>().allFinite()) box.extend(Eigen::Vector2d{x.head<2>()});
+    }
   }
   if (box.isEmpty() || !(box.sizes().maxCoeff() > 0.0)) return "";
   const double scale = std::min(kWide / std::max(box.sizes().x(), 1e-9), kHigh / std::max(box.sizes().y(), 1e-9));
@@ -142,7 +147,7 @@ Figure draw_plan(const Recording& recording, std::span<const AidCurve> aids) {
     figure.script += dots(name.c_str(), *aids[i].seen, 0, 1, false);
     plot += ", $" + name + dot_style(aids[i].colour);
   }
-  figure.script += data + "EOD\n" + heading("y east [m]") + below("x north [m]") + plan_tics(recording.state) +
+  figure.script += data + "EOD\n" + heading("y east [m]") + below("x north [m]") + plan_tics(recording.state, aids) +
                    "set size ratio -1\nset yrange [] reverse\nplot $e with lines lw 1 lc rgb '" + kMeasuredColour +
                    "'" + plot + "\n";
   return figure;

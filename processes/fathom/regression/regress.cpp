@@ -123,7 +123,25 @@ Recording with_smoothed(Recording recording, const RegressOptions& options, repo
   return recording;
 }
 
+identification::RegressionSettings settings_of(const RegressOptions& options) {
+  identification::RegressionSettings settings;
+  settings.rate = options.rate;
+  settings.cell_gain = 0.01 * options.cell_gain;
+  settings.thrust_gain = 0.01 * options.thrust_gain;
+  settings.stepwise.familywise = options.significance;
+  if (options.f_out > 0.0 && !(options.f_in >= options.f_out))
+    throw InputError("--f-out must not exceed --f-in, or a term would leave as soon as it has entered");
+  if (options.f_in > 0.0) {
+    settings.stepwise.f_in = options.f_in;
+    settings.stepwise.f_out = options.f_out > 0.0 ? options.f_out : options.f_in;
+  }
+  settings.stepwise.autoregressive = settings.stepwise.effective_samples = !options.plain;
+  if (options.current.size() == 2) settings.v_WF << options.current[0], options.current[1], 0.0;
+  return settings;
+}
+
 void run_regress(const RegressOptions& options) {
+  identification::RegressionSettings settings = settings_of(options);
   const model::Vehicle vehicle = model::Vehicle::load(options.files.vehicle);
   std::vector<std::string> notes;
   std::vector<identification::ManoeuvreRows> runs;
@@ -143,19 +161,6 @@ void run_regress(const RegressOptions& options) {
                       " stretches");
     }
   }
-  identification::RegressionSettings settings;
-  settings.rate = options.rate;
-  settings.cell_gain = 0.01 * options.cell_gain;
-  settings.thrust_gain = 0.01 * options.thrust_gain;
-  settings.stepwise.familywise = options.significance;
-  if (options.f_out > 0.0 && !(options.f_in >= options.f_out))
-    throw InputError("--f-out must not exceed --f-in, or a term would leave as soon as it has entered");
-  if (options.f_in > 0.0) {
-    settings.stepwise.f_in = options.f_in;
-    settings.stepwise.f_out = options.f_out > 0.0 ? options.f_out : options.f_in;
-  }
-  settings.stepwise.autoregressive = settings.stepwise.effective_samples = !options.plain;
-  if (options.current.size() == 2) settings.v_WF << options.current[0], options.current[1], 0.0;
   if (options.estimate) {
     settings.v_WF = identification::estimate_current(vehicle, runs, settings);
     char text[100];

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ TEST_CASE("regress: what is wrong with a log is said in one line") {
   auto none = recording;
   none.loads.clear();
   CHECK(said(none, 10.0).find("neither LOADS nor forces in THRUSTERS") != std::string::npos);
+  auto unknown = recording;
+  for (auto& one : unknown.smoothed) one.sigma[7] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(said(unknown, 10.0) == "run: SMOOTHED states no errors by which its states could be believed");
 }
 
 TEST_CASE("regress: unequal steps are averaged by time, and a gap parts a run into stretches") {
