@@ -7,6 +7,7 @@
 
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
+#include "test/support/timing.hpp"
 
 namespace fathom::test {
 
@@ -35,8 +36,7 @@ inline Ran on_a_network(const Scratch& scratch, const std::string& lines, int se
           "up() { within 20 grep -qs 'waits for orders' $1; }\n"
           "vehicle() { rm -f deputy.txt; $deputy -i vehicle \"$@\" 2>deputy.txt & d=$!; up deputy.txt; }\n" +
           lines);
-  return shell("timeout " + std::to_string(seconds) + " unshare -rnm --pid --fork --kill-child --mount-proc bash " +
-               scratch.path("script"));
+  return shell(limit(seconds) + "unshare -rnm --pid --fork --kill-child --mount-proc bash " + scratch.path("script"));
 }
 
 }  // namespace fathom::test

@@ -14,8 +14,8 @@ inline constexpr bool kTimed = true;
 /// How many seeds a statement that must hold for each of them is tried on: the full number in the ordinary build.
 constexpr unsigned seeds(unsigned full) { return kTimed || full < 6 ? full : full / 6; }
 
-/// So many times longer processes may take.
-inline constexpr int kPatience = kTimed ? 1 : 8;
+/// So many times longer processes may take, as ctest gives them (cmake/test_cases.cmake).
+inline constexpr int kPatience = kTimed ? 1 : 6;
 /// "timeout 60 " in the ordinary build: ends what hangs.
 inline std::string limit(int seconds) { return "timeout " + std::to_string(seconds * kPatience) + " "; }
 

@@ -73,13 +73,9 @@ TEST_CASE("drivers, pictures: camera_driver and vision are killed and halted, co
                    "sleep 25; in_mode total; slay camera_driver STOP\n") +
           "kill -INT $r; wait $r\n",
       260);
-  if (!test::kTimed) {
-    MESSAGE(
-        "not asked: the sanitizers do not keep up with pictures in real time; what they found they tell themselves");
-    return;
-  }
   const std::string live = test::read_bytes(scratch.path("live.txt"));
   CHECK_MESSAGE(ran.says("code 0"), ran.text << live);
+  if (!test::kTimed) return;  // with rendered pictures at 30 Hz the sanitizers are too slow for the wall's clock
   CHECK_FALSE(ran.says("no new"));
   CHECK_FALSE(ran.says("no mode"));
   const std::vector<Deed> deeds = test::deeds_in(ran.text);

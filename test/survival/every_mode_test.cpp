@@ -16,7 +16,6 @@
 #include "common/wire/log_reader.hpp"
 #include "common/wire/minds.hpp"
 #include "test/support/private_network.hpp"
-#include "test/support/timing.hpp"
 #include "test/survival/agree.hpp"
 
 namespace fathom {
@@ -137,10 +136,6 @@ long slain(const test::Ran& ran) {
 }
 
 void check_went_on(const Scratch& scratch, const test::Ran& ran, long kills, std::size_t of_identifier) {
-  if (!test::kTimed) {
-    MESSAGE("not asked: the sanitizers do not keep real time; what they found they tell themselves");
-    return;
-  }
   CHECK_MESSAGE(ran.says("code 0"), ran.text);
   CHECK_FALSE(ran.says("no new"));
   CHECK_FALSE(ran.says("no mode"));

@@ -13,7 +13,7 @@ namespace fathom {
 
 TEST_CASE("python: recordings, models, check and diagnosis from the module, and its examples") {
   const std::string package = std::string{FATHOM_BINARY_DIR} + "/python";
-  if (!std::filesystem::exists(package)) {
+  if (!std::filesystem::exists(package + "/fathom")) {
     MESSAGE("skipped: the module was not built (scripts/packages-python.txt)");
     return;
   }
