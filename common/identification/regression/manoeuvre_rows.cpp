@@ -165,7 +165,8 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
   need_hydrodynamics(vehicle);
   const std::vector<SmoothedState> states = sure_states(recording.smoothed);
   if (states.size() < 3)
-    throw InputError(recording.name + ": SMOOTHED states no errors by which its states could be believed");
+    throw InputError(recording.name +
+                     ": SMOOTHED has less than three states whose errors are stated and small enough to believe them");
   const WrenchSignal cells = cells_of(recording, vehicle);
   std::array<WrenchSignal, kPulls.size()> pulls;
   for (std::size_t i = 0; i < pulls.size(); ++i) pulls[i] = cells_of(recording, vehicle, kPulls[i]);

@@ -38,7 +38,8 @@ TEST_CASE("regress: what is wrong with a log is said in one line") {
   CHECK(said(none, 10.0).find("neither LOADS nor forces in THRUSTERS") != std::string::npos);
   auto unknown = recording;
   for (auto& one : unknown.smoothed) one.sigma[7] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(said(unknown, 10.0) == "run: SMOOTHED states no errors by which its states could be believed");
+  CHECK(said(unknown, 10.0) ==
+        "run: SMOOTHED has less than three states whose errors are stated and small enough to believe them");
 }
 
 TEST_CASE("regress: unequal steps are averaged by time, and a gap parts a run into stretches") {

@@ -208,7 +208,9 @@ TEST_CASE("drivers: emulator, line, driver, LCM: the same samples as the parser 
     // The emulated vehicle turns at 0.1 rad/s: half a metre ahead the bow goes 5 cm/s to starboard.
     CHECK(at_origin[i].v_WB_B.y() - ahead[i].v_WB_B.y() == doctest::Approx(0.05).epsilon(0.02));
   }
-  CHECK(corrected + std::max<std::size_t>(unaided, 2) >= ahead.size());
+  // At the sanitizers' pace the two instruments do not begin and end together.
+  const std::size_t missed = test::kTimed ? 2 : std::max<std::size_t>(unaided, 2);
+  CHECK(corrected + missed >= ahead.size());
 
   // A compass's declination turns the heading, and nothing else.
   Chain compass = chain_of("ig500");
