@@ -7,6 +7,7 @@
 #include <iostream>
 #include <string_view>
 
+#include "common/base/brief_number.hpp"
 #include "common/base/error.hpp"
 #include "common/base/near_name.hpp"
 #include "common/base/version.hpp"
@@ -43,13 +44,34 @@ Option* with(Option* self, CLI::Option* option, const CLI::Validator& rule) {
   return self;
 }
 
+/// A bound on numbers with the help's words of `rule`, which itself would name the largest number there is, in all of
+/// its three hundred digits, and six decimals of the smallest. What is no finite number is refused by itself.
+template <typename Accepts>
+Option* bounded(Option* self, CLI::Option* option, const CLI::Validator& rule, std::string must, Accepts accepts) {
+  const auto refuse = [must = std::move(must), accepts](const std::string& text) {
+    double value = 0.0;
+    if (!CLI::detail::lexical_cast(text, value)) return text + " is no number";
+    return !std::isfinite(value) || accepts(value) ? std::string{} : "must " + must + ", not " + text;
+  };
+  option->check(refuse, rule.get_description());
+  return self;
+}
+
 }  // namespace
 
 Option* Option::required() { return option_->required(), this; }
-Option* Option::positive() { return with(this, option_, CLI::PositiveNumber); }
-Option* Option::not_negative() { return with(this, option_, CLI::NonNegativeNumber); }
+Option* Option::positive() {
+  return bounded(this, option_, CLI::PositiveNumber, "be more than 0", [](double value) { return value > 0.0; });
+}
+Option* Option::not_negative() {
+  return bounded(this, option_, CLI::NonNegativeNumber, "not be negative", [](double value) { return value >= 0.0; });
+}
 Option* Option::within(int least, int most) { return with(this, option_, CLI::Range(least, most)); }
-Option* Option::within(double least, double most) { return with(this, option_, CLI::Range(least, most)); }
+Option* Option::within(double least, double most) {
+  return bounded(this, option_, CLI::Range(least, most),
+                 "lie from " + brief_number(least) + " to " + brief_number(most),
+                 [=](double value) { return value >= least && value <= most; });
+}
 Option* Option::one_of(std::initializer_list<const char*> words) {
   return with(this, option_, CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
 }
