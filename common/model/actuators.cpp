@@ -38,6 +38,7 @@ void read_propeller(const Config& one, const Vehicle& vehicle, Thruster& thruste
   if (coefficient > kLargestCoefficient) one.fail("K_T0", "no propeller has a thrust coefficient above 2");
   const double density = vehicle.water_density;
   thruster.command = CommandKind::kShaftSpeed;
+  thruster.diameter = diameter;
   thruster.per_square = density * std::pow(diameter, 4) * coefficient / (kTurn * kTurn);
   if (one.has("astern")) thruster.astern = bounded::positive(one, "astern", "");
   if (!one.has("K_TJ")) return;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kStiction =
     0.02;  // m/s at which friction has two thirds of its size: a chain creeps, it does not stick
 constexpr double kSwept = 1.0 / 3.0;  // of a cable whose far end stands still: the mean of (s / L)^2
-constexpr std::array kSquares{"X_uu", "Y_v|v|", "Z_w|w|", "K_p|p|", "M_q|q|", "N_r|r|"};
+constexpr std::array kSquares{"X_u|u|", "Y_v|v|", "Z_w|w|", "K_p|p|", "M_q|q|", "N_r|r|"};
 
 Vector6d at_origin(const Eigen::Vector3d& force, const Eigen::Vector3d& p) {
   Vector6d wrench;
@@ -49,6 +49,7 @@ Vector6d rigid_wrench(const Vehicle& vehicle, const Eigen::Vector3d& down_B, con
   const Eigen::Vector3d linear = momentum.head<3>(), angular = momentum.tail<3>();
   Vector6d wrench = at_origin(vehicle.mass * kGravity * down_B, vehicle.hydrodynamics->p_BG) +
                     at_origin(-vehicle.buoyancy * down_B, vehicle.hydrodynamics->p_BB);
+  if (!vehicle.hydrodynamics->rigid_coriolis) return wrench;  // the coefficients have it
   wrench.head<3>() -= w.cross(linear);
   wrench.tail<3>() -= w.cross(angular) + v.cross(linear);
   return wrench;
@@ -95,17 +96,32 @@ Attached attached(const Vehicle& vehicle, const Eigen::Vector3d& p_WB, const Eig
 
 Vector6d derivative_acceleration(const Model& model, const Motion& motion, const Attached& attached) {
   const Vehicle& vehicle = *model.vehicle;
-  const Hydrodynamics& h = *vehicle.hydrodynamics;
   Load load;
   load.clear();
-  load.drag = manoeuvring_wrench(h.coefficients, motion.nu_r(), h.length, vehicle.water_density);
+  load.drag = hull_wrench(vehicle, motion);
   Vector6d force = motion.w_memory + load.drag + attached.umbilical + attached.chain +
                    rigid_wrench(vehicle, motion.R_WB.row(2).transpose(), motion.nu);
-  for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += model.allocation.col(i) * motion.force[i];
+  if (model.motion_matters) {
+    force += vehicle.hydrodynamics->set->pushed(vehicle, motion);
+  } else {
+    for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += model.allocation.col(i) * motion.force[i];
+  }
   force += water_wrench(vehicle, motion.nu.tail<3>(), motion.v_WF_B, motion.a_WF_B);
   for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
   force += load.wrench;
-  return InertiaFactor{total_inertia(vehicle) + load.inertia()}.solve(force);
+  return accelerated(vehicle, total_inertia(vehicle) + load.inertia(), force);
+}
+
+Vector6d accelerated(const Vehicle& vehicle, Matrix6d inertia, Vector6d force) {
+  const auto& moves = vehicle.hydrodynamics->set->moves;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    if (moves[static_cast<std::size_t>(i)]) continue;
+    inertia.row(i).setZero();
+    inertia.col(i).setZero();
+    inertia(i, i) = 1.0;
+    force[i] = 0.0;
+  }
+  return InertiaFactor{inertia}.solve(force);
 }
 
 BaseTheta nearest_base(const Vehicle& vehicle) {
@@ -113,10 +129,12 @@ BaseTheta nearest_base(const Vehicle& vehicle) {
   BaseTheta theta = BaseTheta::Zero();
   theta.head<6>() = total_inertia(vehicle).diagonal();
   for (const ManoeuvringCoefficient& one : h.coefficients) {
-    const auto square = std::find(kSquares.begin(), kSquares.end(), one.term->name);
+    // Gertler's X_uu is that of a craft that goes ahead; in a series about a speed the name means another thing.
+    const bool ahead = h.set == &gertler_submarine() && one.term->name == "X_uu";
+    const auto square = ahead ? kSquares.begin() : std::find(kSquares.begin(), kSquares.end(), one.term->name);
     if (square == kSquares.end()) continue;
     theta[index(BaseParameter::X_uu) + (square - kSquares.begin())] =
-        one.value * manoeuvring_scale(*one.term, h.length, vehicle.water_density);
+        one.value * manoeuvring_scale(*one.term, h.lengths(vehicle.water_density));
   }
   theta[index(BaseParameter::W_B)] = vehicle.mass * kGravity - vehicle.buoyancy;
   theta.segment<3>(index(BaseParameter::G_x)) = vehicle.mass * kGravity * h.p_BG - vehicle.buoyancy * h.p_BB;

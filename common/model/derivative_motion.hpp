@@ -38,6 +38,8 @@ void require_derivatives(const Vehicle& vehicle);
 /// nu_dot of a model whose vehicle has derivatives: they stand in the place of the base parameters, effects act as on
 /// any other. Call after feel().
 [[nodiscard]] Vector6d derivative_acceleration(const Model& model, const Motion& motion, const Attached& attached);
+/// nu_dot of this force [N, N m]: motions that the vehicle's set does not describe stay as they are.
+[[nodiscard]] Vector6d accelerated(const Vehicle& vehicle, Matrix6d inertia, Vector6d force);
 /// The base parameters nearest to the derivatives: inertia, weight and restoring moments are the same, drag along each
 /// axis is that of its own square.
 [[nodiscard]] BaseTheta nearest_base(const Vehicle& vehicle);

@@ -39,6 +39,36 @@ LoadCell read_cell(const Config& config) {
   return cell;
 }
 
+/// One number, or two: of a flow from starboard and from port.
+std::array<double, 2> either_way(const Config& config, const std::string& key) {
+  const std::vector<double> numbers = bounded::quantities(config, key, "");
+  if (numbers.empty() || numbers.size() > 2)
+    config.fail(key, "'" + key + "' is one number, or two: of a flow from starboard and from port");
+  return {numbers.front(), numbers.back()};
+}
+
+Interaction read_interaction(const Config& config) {
+  const auto number = [&](const char* key, double otherwise) {
+    return config.has(key) ? bounded::quantity(config, key, "") : otherwise;
+  };
+  Interaction i{.t_P = number("t_P", 0.0),
+                .w_P = number("w_P", 0.0),
+                .C_1 = number("C_1", 0.0),
+                .x_P = number("x_P", -0.5),
+                .K_TJJ = number("K_TJJ", 0.0),
+                .t_R = number("t_R", 0.0),
+                .a_H = number("a_H", 0.0),
+                .x_H = number("x_H", -0.5),
+                .l_R = number("l_R", -1.0),
+                .epsilon = number("epsilon", 1.0),
+                .kappa = number("kappa", 0.5),
+                .eta = number("eta", 1.0)};
+  if (config.has("C_2")) i.C_2 = either_way(config, "C_2");
+  i.gamma_R = config.has("gamma_R") ? either_way(config, "gamma_R") : std::array<double, 2>{1.0, 1.0};
+  if (i.w_P >= 1.0) config.fail("w_P", "'w_P' is less than 1: the propeller meets some flow");
+  return i;
+}
+
 /// Off the diagonal, by the derivative's name: `Y_rdot: -12 kg m` is -M_26. What is stated on one side alone holds on
 /// the other: ideal fluid has no sides.
 void read_couplings(const Config& config, Matrix6d& M) {
@@ -72,11 +102,12 @@ void require_energy(const Config& config, const char* key, const Eigen::MatrixXd
 
 }  // namespace
 
-std::vector<ManoeuvringCoefficient> read_coefficients(const Config& config) {
+std::vector<ManoeuvringCoefficient> read_coefficients(const Config& config, const StandardSet& set) {
   std::vector<ManoeuvringCoefficient> coefficients;
   for (const std::string& name : config.keys()) {
-    const ManoeuvringTerm* term = find_manoeuvring_term(name);
-    if (term == nullptr) config.fail(name, "'" + name + "' is no hydrodynamic derivative (docs/model.md lists them)");
+    const ManoeuvringTerm* term = set.find(name);
+    if (term == nullptr)
+      config.fail(name, "'" + name + "' is no coefficient of " + std::string{set.name} + " (docs/model.md lists them)");
     if (config.is_section(name)) {
       const Config both = config.section(name);
       const double value = bounded::quantity(both, "value", "");
@@ -98,7 +129,25 @@ Eigen::Matrix3d Hydrodynamics::inertia(const Eigen::Vector3d& diagonal) const {
 
 Hydrodynamics Hydrodynamics::from(const Config& config, const Eigen::Vector3d& inertia) {
   Hydrodynamics h;
+  if (config.has("model")) {
+    const std::string name = config.text("model");
+    h.set = find_standard_set(name);
+    if (h.set == nullptr) config.fail("model", "'" + name + "' is no standard set; they are " + standard_set_names());
+  }
   h.length = bounded::positive(config, "length", "m");
+  if (config.has("draught")) h.draught = bounded::positive(config, "draught", "m");
+  if (config.has("cruise")) h.cruise = bounded::positive(config, "cruise", "m/s");
+  const std::string set{h.set->name};
+  if (h.set->needs_draught && h.draught == 0.0) config.fail("model", set + " needs the 'draught' of the hull");
+  if (h.set->needs_cruise && h.cruise == 0.0)
+    config.fail("model", set + " is a series about a speed ahead: state it as 'cruise'");
+  if (config.has("rigid_coriolis")) {
+    const std::string where = config.text("rigid_coriolis");
+    if (where != "apart" && where != "among_coefficients")
+      config.fail("rigid_coriolis", "'rigid_coriolis' is apart or among_coefficients, not '" + where + "'");
+    h.rigid_coriolis = where == "apart";
+  }
+  if (config.has("interaction")) h.interaction = read_interaction(config.section("interaction"));
   h.added_mass.diagonal() << bounded::vector3(config, "added_mass", "kg"),
       bounded::vector3(config, "added_inertia", "kg m^2");
   if (h.added_mass.minCoeff() < 0.0) config.fail("added_mass", "added mass and inertia must not be negative");
@@ -112,8 +161,8 @@ Hydrodynamics Hydrodynamics::from(const Config& config, const Eigen::Vector3d& i
     h.products = bounded::vector3(config, "products_of_inertia", "kg m^2");
     require_energy(config, "products_of_inertia", h.inertia(inertia), "the inertia about the centre of mass");
   }
-  if (config.has("coefficients")) h.coefficients = read_coefficients(config.section("coefficients"));
-  if (config.has("reference")) h.reference = read_coefficients(config.section("reference"));
+  if (config.has("coefficients")) h.coefficients = read_coefficients(config.section("coefficients"), *h.set);
+  if (config.has("reference")) h.reference = read_coefficients(config.section("reference"), *h.set);
   if (config.has("umbilical")) h.umbilical = read_umbilical(config.section("umbilical"));
   if (config.has("chain")) h.chain = read_chain(config.section("chain"));
   if (config.has("load_cells")) {

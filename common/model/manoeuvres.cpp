@@ -8,13 +8,16 @@
 #include "common/base/error.hpp"
 #include "common/base/factors.hpp"
 #include "common/model/derivative_motion.hpp"
+#include "common/model/manoeuvring/helm.hpp"
+#include "common/model/motion.hpp"
 
 namespace fathom::model {
 namespace {
 
 constexpr double kHanging = 0.05;    // m/s and rad/s, together: still on its way to rest after that long
 constexpr double kDamping = 1.0;     // 1/s
-constexpr double kRunaway = 10.0;    // m/s and rad/s: ten times what such a vehicle can do
+constexpr double kRunaway = 10.0;    // m/s and rad/s: ten times what a small vehicle can do
+constexpr double kFaster = 3.0;      // times its cruising speed: no more than that
 constexpr double kStep = 0.01;       // s
 constexpr double kSettling = 400.0;  // s in which a vehicle comes to rest on its chain
 
@@ -29,19 +32,20 @@ struct Forces {
   Vector6d nu_dot{Vector6d::Zero()};
 };
 
-Forces forces(const Vehicle& vehicle, const State& state, const Vector6d& thrust, const Eigen::Vector3d& extra_W) {
-  const Hydrodynamics& h = *vehicle.hydrodynamics;
-  const Eigen::Matrix3d R = state.q.toRotationMatrix();
+Forces forces(const Vehicle& vehicle, const State& state, const ActuatorForces& thrust,
+              const Eigen::Vector3d& extra_W) {
+  Motion motion{.p_WB = state.p, .R_WB = state.q.toRotationMatrix(), .nu = state.nu};
+  motion.force = thrust;
+  motion.vehicle = &vehicle;
   Forces f;
-  f.attached = attached(vehicle, state.p, R, state.nu, extra_W);
-  const Vector6d sum = thrust + f.attached.umbilical + f.attached.chain +
-                       rigid_wrench(vehicle, R.row(2).transpose(), state.nu) +
-                       manoeuvring_wrench(h.coefficients, state.nu, h.length, vehicle.water_density);
-  f.nu_dot = InertiaFactor{total_inertia(vehicle)}.solve(sum);
+  f.attached = attached(vehicle, state.p, motion.R_WB, state.nu, extra_W);
+  const Vector6d sum = vehicle.hydrodynamics->set->pushed(vehicle, motion) + f.attached.umbilical + f.attached.chain +
+                       rigid_wrench(vehicle, motion.R_WB.row(2).transpose(), state.nu) + hull_wrench(vehicle, motion);
+  f.nu_dot = accelerated(vehicle, total_inertia(vehicle), sum);
   return f;
 }
 
-void step(const Vehicle& vehicle, State& state, const Vector6d& thrust, const Eigen::Vector3d& extra_W) {
+void step(const Vehicle& vehicle, State& state, const ActuatorForces& thrust, const Eigen::Vector3d& extra_W) {
   const Vector6d first = forces(vehicle, state, thrust, extra_W).nu_dot;
   State middle = state;
   middle.nu += 0.5 * kStep * first;
@@ -85,19 +89,20 @@ std::vector<double> ManoeuvrePilot::thrust(double t, double yaw) {
 
 HangingRest hanging_rest(const Vehicle& vehicle) {
   require_derivatives(vehicle);
+  const ActuatorForces none = ActuatorForces::Zero(vehicle.allocation.cols());
   State state;
   state.p.z() = vehicle.hydrodynamics->chain ? vehicle.hydrodynamics->chain->seabed - 1.0 : 5.0;
   const State begin = state;
   const auto moves = [&] { return !state.nu.allFinite() || state.nu.norm() > kHanging; };
   for (double t = 0.0; t < kSettling && state.nu.allFinite(); t += kStep)
-    step(vehicle, state, Vector6d::Zero(), Eigen::Vector3d::Zero());
+    step(vehicle, state, none, Eigen::Vector3d::Zero());
   if (moves()) {
     // Products of velocities vanish at rest: where it is does not depend on derivatives, and these do not lead there.
     Vehicle damped = vehicle;
     damped.hydrodynamics->coefficients.clear();
     state = begin;
     for (double t = 0.0; t < kSettling; t += kStep) {
-      step(damped, state, Vector6d::Zero(), Eigen::Vector3d::Zero());
+      step(damped, state, none, Eigen::Vector3d::Zero());
       state.nu *= 1.0 - kDamping * kStep;
     }
   }
@@ -153,7 +158,9 @@ class Growth {
   [[nodiscard]] double force(std::size_t i, const Vector6d& nu) const {
     const Hydrodynamics& h = *vehicle_.hydrodynamics;
     const ManoeuvringCoefficient& one = h.coefficients[i];
-    return one.value * manoeuvring_scale(*one.term, h.length, vehicle_.water_density) * one.term->value(nu);
+    TermMotion motion{nu};
+    motion.cruise = h.cruise;
+    return one.value * manoeuvring_scale(*one.term, h.lengths(vehicle_.water_density)) * one.term->value(motion);
   }
 
   const Vehicle& vehicle_;
@@ -164,10 +171,12 @@ class Growth {
 
 std::vector<FlightMoment> fly(const Vehicle& vehicle, const Manoeuvre& manoeuvre, double dt,
                               const Disturbance& disturbance, std::optional<Divergence>* diverged) {
-  const HangingRest rest = hanging_rest(vehicle);
+  require_derivatives(vehicle);
+  Helm helm{vehicle, manoeuvre};
+  const HangingRest rest = helm.steered() ? HangingRest{} : hanging_rest(vehicle);
   if (!std::isfinite(rest.depth)) throw InputError(vehicle.name + ": with these derivatives it does not come to rest");
-  if (vehicle.thrusters.size() != 2) throw InputError(vehicle.name + ": these manoeuvres are flown with two thrusters");
   State state;
+  if (helm.steered()) state.nu[0] = vehicle.hydrodynamics->cruise;
   state.q = Eigen::AngleAxisd(manoeuvre.heading, Eigen::Vector3d::UnitZ()) * rest.q_WB;
   state.p << manoeuvre.start.head<2>(), rest.depth;
 
@@ -177,29 +186,29 @@ std::vector<FlightMoment> fly(const Vehicle& vehicle, const Manoeuvre& manoeuvre
   ManoeuvrePilot pilot{manoeuvre};
   Growth growth{vehicle};
   double yaw = manoeuvre.heading;
+  const double runaway = std::max(kRunaway, kFaster * vehicle.hydrodynamics->cruise);
   for (long k = 0; k <= steps; ++k) {
     const double t = static_cast<double>(k) * kStep;
-    const std::vector<double> thrust = pilot.thrust(t, yaw);
-    const Vector6d tau = vehicle.allocation * Eigen::Map<const Eigen::Vector2d>(thrust.data());
+    const ActuatorForces& thrust = helm.forces(pilot.demand(t, yaw), kStep);
     const Eigen::Vector3d extra = disturbance ? disturbance(t) : Eigen::Vector3d(Eigen::Vector3d::Zero());
     if (k % std::max(every, 1L) == 0) {
-      const Forces f = forces(vehicle, state, tau, extra);
+      const Forces f = forces(vehicle, state, thrust, extra);
       flight.push_back({.t = t,
                         .p_WB = state.p,
                         .q_WB = state.q,
                         .nu = state.nu,
                         .nu_dot = f.nu_dot,
-                        .thrust = thrust,
+                        .thrust = {thrust.begin(), thrust.end()},
                         .umbilical = f.attached.umbilical,
                         .chain = f.attached.chain,
                         .F_umbilical_B = f.attached.F_umbilical_B,
                         .F_chain_B = f.attached.F_chain_B});
     }
-    step(vehicle, state, tau, extra);
+    step(vehicle, state, thrust, extra);
     yaw = euler_from_rotation(state.q.toRotationMatrix()).z();
     growth.see(state.nu);
     // Seen while the numbers still mean something: what runs away is past this within a second.
-    if (!state.nu.allFinite() || state.nu.cwiseAbs().maxCoeff() > kRunaway) {
+    if (!state.nu.allFinite() || state.nu.cwiseAbs().maxCoeff() > runaway) {
       const Divergence found = growth.found(t, state.nu);
       if (diverged == nullptr) throw InputError(vehicle.name + ": with these derivatives the motion " + found.text());
       *diverged = found;

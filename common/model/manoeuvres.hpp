@@ -1,6 +1,6 @@
-// A vehicle of hydrodynamic derivatives flown through a standard manoeuvre in virtual time: rigid body in six degrees
-// of freedom, thrusters, umbilical and chain. For trials that are to be reconstructed, and to compare sets of
-// derivatives.
+// A vehicle of hydrodynamic derivatives flown through a standard manoeuvre in virtual time: rigid body, umbilical and
+// chain, steered by two thrusters or by its rudders. For trials that are to be reconstructed, and to compare sets of
+// derivatives with each other and with what is published of their vehicle.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,8 @@ enum class ManoeuvreKind { kLine, kZigzag, kCircle };
 /// "line", "zigzag" or "circle"; InputError otherwise.
 [[nodiscard]] ManoeuvreKind manoeuvre_from(const std::string& name);
 
-/// Rest, straight ahead, and then what the kind says. A circle goes to port.
+/// Rest, straight ahead, and then what the kind says. A circle goes to port. Who steers by rudders begins at the
+/// cruising speed of its set, with propellers that keep it: no rest, thrust and difference say nothing there.
 struct Manoeuvre {
   ManoeuvreKind kind{ManoeuvreKind::kCircle};
   double rest{6.0};                       ///< s
@@ -26,12 +27,19 @@ struct Manoeuvre {
   double thrust{11.5};                    ///< N of each of the two thrusters ahead
   double difference{3.2};                 ///< N by which one gives more and the other less while turning
   double swing{0.35};                     ///< rad of heading at which a zigzag turns back
+  double rudder{0.35};                    ///< rad to which rudders are put over
+  double rudder_rate{0.0};                ///< rad/s at which they go there; 0: at once
   Eigen::Vector3d start{3.0, 10.0, 0.0};  ///< m; the depth is where the vehicle hangs at rest
   double heading{0.0};                    ///< rad
 };
 
 /// The preset of that name: how long and with how much thrust it is flown.
 [[nodiscard]] Manoeuvre manoeuvre_preset(const std::string& name);
+
+/// Whether a rudder, and not two thrusters, turns it.
+[[nodiscard]] bool steered_by_rudder(const Vehicle& vehicle);
+/// The manoeuvre of that name for this vehicle: the preset, or for who is steered by rudders as long as ships need.
+[[nodiscard]] Manoeuvre manoeuvre_for(const Vehicle& vehicle, const std::string& name);
 
 /// Who flies it, open loop: only a zigzag looks at the heading.
 class ManoeuvrePilot {
@@ -66,7 +74,7 @@ struct FlightMoment {
   Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};
   Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
   Vector6d nu{Vector6d::Zero()}, nu_dot{Vector6d::Zero()};
-  std::vector<double> thrust;            ///< N each
+  std::vector<double> thrust;            ///< N each; of a rudder at its reference speed
   Vector6d umbilical{Vector6d::Zero()};  ///< N, N m at Bo, in B, disturbance included
   Vector6d chain{Vector6d::Zero()};
   Eigen::Vector3d F_umbilical_B{Eigen::Vector3d::Zero()}, F_chain_B{Eigen::Vector3d::Zero()};  ///< N at the attachment
@@ -86,8 +94,18 @@ struct Divergence {
   [[nodiscard]] std::string text() const;
 };
 
-/// Moments `dt` apart. InputError when the vehicle file has no hydrodynamics or not two thrusters. A motion that
-/// diverges is flown until then where `diverged` takes the reason, else InputError with it.
+/// What trials of ships are compared by (IMO MSC.137(76)); nothing where the motion did not come so far.
+struct TurnFigures {
+  std::optional<double> advance;            ///< m ahead until the heading has changed by 90 deg
+  std::optional<double> transfer;           ///< m to the side then
+  std::optional<double> tactical_diameter;  ///< m to the side when it has changed by 180 deg
+  double radius{};                          ///< m, at the end
+};
+/// Of a manoeuvre's circle: from where it begins to turn, against the course that it was to hold before.
+[[nodiscard]] TurnFigures turn_figures(const std::vector<FlightMoment>& flight, const Manoeuvre& manoeuvre);
+
+/// Moments `dt` apart. InputError when the vehicle file has no hydrodynamics, no rudder and not two thrusters. A motion
+/// that diverges is flown until then where `diverged` takes the reason, else InputError with it.
 [[nodiscard]] std::vector<FlightMoment> fly(const Vehicle& vehicle, const Manoeuvre& manoeuvre, double dt,
                                             const Disturbance& disturbance = nullptr,
                                             std::optional<Divergence>* diverged = nullptr);

@@ -63,6 +63,7 @@ struct Thruster {
   CommandKind command{CommandKind::kForce};
   double per_square{};  ///< N/(rad/s)^2 of shaft speed ahead, in still water
   double astern{1.0};   ///< times that astern
+  double diameter{};    ///< m, of a propeller by shaft speed; 0: none
   double inflow{};      ///< N^(1/2)/(m/s): ahead f = f_0 - inflow sqrt|f_0| u_a, u_a the water's speed past it
   std::optional<Fin> fin;
   std::optional<Weight> weight;

@@ -29,7 +29,7 @@ model::Vehicle vehicle_of(const std::string& path, const model::Vehicle* base, b
   if (!vehicle.hydrodynamics) throw InputError(base->name + ": the vehicle file has no section hydrodynamics");
   std::vector<model::ManoeuvringCoefficient> own = std::move(vehicle.hydrodynamics->coefficients);
   auto& set = vehicle.hydrodynamics->coefficients;
-  set = model::read_coefficients(config.section("coefficients"));
+  set = model::read_coefficients(config.section("coefficients"), *vehicle.hydrodynamics->set);
   if (config.has("source")) static_cast<void>(config.text("source"));
   config.finish();
   std::erase_if(own, [&](const auto& one) {
@@ -119,8 +119,9 @@ void compare_manoeuvre(const ManoeuvreComparison& asked) {
   if (!vehicle.empty()) base = model::Vehicle::load(vehicle);
   const model::Vehicle a = vehicle_of(first, base ? &*base : nullptr, over);
   const model::Vehicle b = vehicle_of(second, base ? &*base : &a, over);
-  model::Manoeuvre manoeuvre;
-  manoeuvre.kind = model::manoeuvre_from(name);
+  const model::Manoeuvre manoeuvre = model::manoeuvre_for(a, name);
+  if (model::steered_by_rudder(a) != model::steered_by_rudder(b))
+    throw InputError("one of the two steers by a rudder, the other by thrusters: their manoeuvres are not alike");
   std::optional<model::Divergence> lost_a, lost_b;
   Flight one = model::fly(a, manoeuvre, kEvery, nullptr, &lost_a);
   Flight two = model::fly(b, manoeuvre, kEvery, nullptr, &lost_b);
@@ -142,6 +143,11 @@ void compare_manoeuvre(const ManoeuvreComparison& asked) {
   if (manoeuvre.kind == model::ManoeuvreKind::kCircle) {
     line("yaw rate", x.yaw_rate, y.yaw_rate, "rad/s");
     line("radius", x.radius, y.radius, "m");
+    const model::TurnFigures p = model::turn_figures(one, manoeuvre), q = model::turn_figures(two, manoeuvre);
+    if (p.advance && q.advance) line("advance", *p.advance, *q.advance, "m");
+    if (p.transfer && q.transfer) line("transfer", *p.transfer, *q.transfer, "m");
+    if (p.tactical_diameter && q.tactical_diameter)
+      line("tactical diameter", *p.tactical_diameter, *q.tactical_diameter, "m");
   }
   if (manoeuvre.kind == model::ManoeuvreKind::kZigzag) {
     line("overshoot of heading", x.overshoot, y.overshoot, "rad");

@@ -10,10 +10,10 @@
 
 namespace fathom::identification {
 
-AxisCandidates candidates_of(int axis) {
+AxisCandidates candidates_of(int axis, const model::StandardSet& set) {
   AxisCandidates candidates;
-  for (const model::ManoeuvringTerm& term : model::manoeuvring_terms()) {
-    if (term.axis != axis) continue;
+  for (const model::ManoeuvringTerm& term : set.terms) {
+    if (term.axis != axis || term.steers || term.other >= 0) continue;
     candidates.names.emplace_back(term.name);
     candidates.terms.push_back(&term);
   }
@@ -27,7 +27,7 @@ Eigen::MatrixXd columns_of(const std::vector<ManoeuvreRows::Row>& stretch, int a
   Eigen::VectorXd scale(columns);
   for (Eigen::Index j = 0; j < columns; ++j) {
     scale[j] =
-        model::manoeuvring_scale(*candidates.terms[static_cast<std::size_t>(j)], h.length, vehicle.water_density);
+        model::manoeuvring_scale(*candidates.terms[static_cast<std::size_t>(j)], h.lengths(vehicle.water_density));
   }
   Eigen::MatrixXd z(static_cast<Eigen::Index>(stretch.size()), columns + 1);
   for (std::size_t n = 0; n < stretch.size(); ++n) {
@@ -38,8 +38,10 @@ Eigen::MatrixXd columns_of(const std::vector<ManoeuvreRows::Row>& stretch, int a
     nu_r.head<3>() -= v_F;
     const Vector6d b = model::hydrodynamic_wrench(vehicle, row.q_WB, row.nu, row.nu_dot, row.known) -
                        model::water_wrench(vehicle, row.nu.tail<3>(), v_F, row.q_WB.conjugate() * row.a_WF);
+    model::TermMotion motion{nu_r};
+    motion.cruise = h.cruise;
     for (Eigen::Index j = 0; j < columns; ++j) {
-      z(i, j) = scale[j] * candidates.terms[static_cast<std::size_t>(j)]->value(nu_r);
+      z(i, j) = scale[j] * candidates.terms[static_cast<std::size_t>(j)]->value(motion);
     }
     z(i, columns) = b[axis];
   }
@@ -63,7 +65,7 @@ std::vector<AxisRegression> regress(const model::Vehicle& vehicle, std::span<con
   for (int axis = 0; axis < 6; ++axis) {
     AxisRegression& one = result.emplace_back();
     one.axis = axis;
-    one.candidates = candidates_of(axis);
+    one.candidates = candidates_of(axis, *vehicle.hydrodynamics->set);
     std::vector<LaggedGram> grams;
     for (const ManoeuvreRows& run : runs) {
       grams.push_back(gram_of(run, axis, one.candidates, vehicle, settings));
@@ -88,7 +90,7 @@ Eigen::Vector3d estimate_current(const model::Vehicle& vehicle, std::span<const 
     settings.v_WF = v_WF;
     double sum = 0.0;
     for (const int axis : kAxes) {
-      const AxisCandidates candidates = candidates_of(axis);
+      const AxisCandidates candidates = candidates_of(axis, *vehicle.hydrodynamics->set);
       LaggedGram gram{static_cast<Eigen::Index>(candidates.names.size()) + 1};
       for (const ManoeuvreRows& run : runs) gram.add(gram_of(run, axis, candidates, vehicle, settings));
       const StepwiseResult fit = stepwise({gram}, candidates.names, settings.stepwise);

@@ -27,7 +27,8 @@ struct AxisCandidates {
   std::vector<std::string> names;
   std::vector<const model::ManoeuvringTerm*> terms;
 };
-[[nodiscard]] AxisCandidates candidates_of(int axis);
+/// Those of a set that have neither a rudder, whose force is known, nor two axes.
+[[nodiscard]] AxisCandidates candidates_of(int axis, const model::StandardSet& set);
 /// A column per candidate, and b.
 [[nodiscard]] Eigen::MatrixXd columns_of(const std::vector<ManoeuvreRows::Row>& stretch, int axis,
                                          const AxisCandidates& candidates, const model::Vehicle& vehicle,

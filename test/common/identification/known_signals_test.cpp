@@ -103,7 +103,7 @@ TEST_CASE("regress: an umbilical whose length the log tells pulls with its lengt
 TEST_CASE("regress: the water's velocity that a log tells is taken off, and what its acceleration pushes") {
   const model::Vehicle vehicle = without_cells();
   Recording recording = ahead();
-  const AxisCandidates surge = candidates_of(0);
+  const AxisCandidates surge = candidates_of(0, model::gertler_submarine());
   const auto x_uu = std::ranges::find(surge.names, "X_uu") - surge.names.begin();
   const auto of = [&](const Recording& log, const Eigen::Vector3d& v_WF) {
     const ManoeuvreRows rows = rows_of(log, vehicle, 10.0);

@@ -99,7 +99,8 @@ TEST_CASE("ready vehicles: numbers that follow from others") {
   CHECK(mean_of(ship, "Y_v") == doctest::Approx(-0.315 * area * 0.76).epsilon(1e-3));
   CHECK(mean_of(ship, "N_r") == doctest::Approx(-0.049 * area * 2.909 * 2.909 * 0.76).epsilon(1e-3));
   const Vehicle remus = test::vehicle_from_repository("remus100");
-  CHECK_FALSE(remus.has_thrusters());
+  CHECK(remus.thrusters.size() == 3);
+  CHECK(undriven_note(remus).find("roll") != std::string::npos);
   CHECK(mean_of(remus, "m_Y") == mean_of(remus, "m_Z"));
   CHECK(mean_of(remus, "G_z") == doctest::Approx(0.0196 * 299.0).epsilon(0.01));
   const Vehicle glider = test::vehicle_from_repository("slocum");

@@ -79,7 +79,7 @@ TEST_CASE("manoeuvres: what is known of a flight leaves what the derivatives gav
   for (const FlightMoment& m : fly(vehicle, {.kind = ManoeuvreKind::kZigzag}, 1.0)) {
     const Vector6d tau = vehicle.allocation * Eigen::Map<const Eigen::Vector2d>(m.thrust.data());
     const Vector6d left = hydrodynamic_wrench(vehicle, m.q_WB, m.nu, m.nu_dot, tau + m.umbilical + m.chain);
-    CHECK((left - manoeuvring_wrench(h.coefficients, m.nu, h.length, vehicle.water_density)).norm() < 1e-9);
+    CHECK((left - manoeuvring_wrench(h.coefficients, m.nu, h.lengths(vehicle.water_density))).norm() < 1e-9);
   }
 }
 

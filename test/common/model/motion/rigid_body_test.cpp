@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSteps = 4000;
 constexpr double kStep = 1e-3, kFor = kSteps * kStep;  // s
-constexpr double kKept = 1e-8;              // of energies and momenta near 10: Runge-Kutta's error over that time
+constexpr double kKept = 1e-8;  // of energies and momenta near 10: Runge-Kutta's error over that time
 
 /// Weightless: buoyancy at the centre of mass.
 Vehicle askew() {
@@ -107,7 +107,7 @@ TEST_CASE(
   for (const FlightMoment& m : fly(vehicle, {.kind = ManoeuvreKind::kZigzag}, 1.0)) {
     const Vector6d tau = vehicle.allocation * Eigen::Map<const Eigen::Vector2d>(m.thrust.data());
     const Vector6d known = tau + m.umbilical + m.chain;
-    const Vector6d by_terms = manoeuvring_wrench(h.coefficients, m.nu, h.length, vehicle.water_density);
+    const Vector6d by_terms = manoeuvring_wrench(h.coefficients, m.nu, h.lengths(vehicle.water_density));
     CHECK((hydrodynamic_wrench(vehicle, m.q_WB, m.nu, m.nu_dot, known) - by_terms).norm() < 1e-9);
     untold = std::max(untold, (hydrodynamic_wrench(unstated, m.q_WB, m.nu, m.nu_dot, known) - by_terms).norm());
   }
