@@ -132,6 +132,7 @@ Hydrodynamics Hydrodynamics::from(const Config& config, const Eigen::Vector3d& i
   if (config.has("model")) {
     const std::string name = config.text("model");
     h.set = find_standard_set(name);
+    h.named = true;
     if (h.set == nullptr) config.fail("model", "'" + name + "' is no standard set; they are " + standard_set_names());
   }
   h.length = bounded::positive(config, "length", "m");

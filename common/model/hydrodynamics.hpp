@@ -68,6 +68,7 @@ struct Hydrodynamics {
   std::optional<Chain> chain;
   std::vector<LoadCell> load_cells;  ///< order of LOADS
   const StandardSet* set{&gertler_submarine()};
+  bool named{false};                       ///< the file names its set: these numbers are published of such a craft
   double draught{};                        ///< m; 0: not stated
   double cruise{};                         ///< m/s ahead about which the set is expanded; 0: not stated
   bool rigid_coriolis{true};               ///< false: the rigid body's Coriolis terms are among the coefficients

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/model/actuators.hpp"
+#include "common/model/derivative_motion.hpp"
 #include "common/model/motion.hpp"
 #include "common/model/vehicle.hpp"
 
@@ -90,6 +91,33 @@ Vector6d hull_wrench(const Vehicle& vehicle, const Motion& motion) {
     const Eigen::Vector3d v = nu_r.head<3>();
     wrench.tail<3>() -= w.cross(angular) + v.cross(linear);
   }
+  return wrench;
+}
+
+Vector6d beside_base(const Vehicle& vehicle, const Motion& motion) {
+  const Hydrodynamics& h = *vehicle.hydrodynamics;
+  const TermLengths lengths = h.lengths(vehicle.water_density);
+  const Vector6d nu_r = motion.nu_r();
+  Vector6d wrench = manoeuvring_wrench(h.coefficients, term_motion(vehicle, motion), lengths);
+  for (Eigen::Index i = h.set->needs_cruise ? 1 : 0; i < 6; ++i) {
+    TermMotion alone{nu_r[i] * Vector6d::Unit(i)};
+    alone.cruise = h.cruise;
+    wrench[i] -= manoeuvring_wrench(h.coefficients, alone, lengths)[i];
+  }
+  const auto turned = [](const Vector6d& nu, const Vector6d& momentum) {  // C nu of this momentum
+    const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>(), P = momentum.head<3>(), L = momentum.tail<3>();
+    Vector6d both;
+    both << w.cross(P), w.cross(L) + v.cross(P);
+    return both;
+  };
+  if (h.set->coriolis != AddedCoriolis::kWhole) {
+    const Vector6d added = turned(nu_r, h.added_mass * nu_r);
+    wrench.tail<3>() += added.tail<3>();
+    if (h.set->coriolis == AddedCoriolis::kAmongTerms) wrench.head<3>() += added.head<3>();
+  }
+  if (!h.rigid_coriolis) wrench += turned(motion.nu, rigid_inertia(vehicle) * motion.nu);
+  if (!vehicle.thrusters.empty() && motion.force.size() == static_cast<Eigen::Index>(vehicle.thrusters.size()))
+    wrench += h.set->pushed(vehicle, motion) - acting_wrench(vehicle, motion);
   return wrench;
 }
 

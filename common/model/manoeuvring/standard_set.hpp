@@ -54,6 +54,11 @@ struct StandardSet {
 /// not among them [N, N m]. The vehicle has hydrodynamics.
 [[nodiscard]] Vector6d hull_wrench(const Vehicle& vehicle, const Motion& motion);
 
+/// What the set has beside a base model of the same masses and actuators [N, N m]: its wrench without drag along each
+/// axis by that axis' own velocity, which the base model has, and without what both have of Coriolis terms; how it
+/// differs in what actuators do. A series about a speed ahead keeps what it has along that axis, its propeller with it.
+[[nodiscard]] Vector6d beside_base(const Vehicle& vehicle, const Motion& motion);
+
 /// acting_wrench() without the rudders and planes whose angles are among the coefficients.
 [[nodiscard]] Vector6d pushed_but_for_steering(const Vehicle& vehicle, const Motion& motion);
 

@@ -23,6 +23,7 @@ namespace {
 using Late = LiveDiagnoser::Late;
 
 constexpr Utime kStart = 1'600'000'000'000'000;
+constexpr int kPatience = 600'000;  // ms: a search of lower priority, beside others and under sanitizers
 constexpr LiveSettings kSettings{.first_look = 30.0, .interval = 5.0, .max_skew = 0.5, .threads = 2};
 
 /// A dive as the minds hear it: STATE, thrusters, gyro.
@@ -74,7 +75,7 @@ std::vector<EffectRanking> listen(LiveDiagnoser& diagnoser, const Recording& rec
   // Rankings that have not come yet follow with the states to come: such as were heard already change nothing.
   const double seconds = seconds_between(recording.state.front().utime, recording.state.back().utime);
   const auto expected = static_cast<std::size_t>(seconds / kSettings.interval + 1e-9);
-  for (int k = 0; k < 60'000 && late == Late::kIsToldLate && rankings.size() < expected; ++k) {
+  for (int k = 0; k < kPatience && late == Late::kIsToldLate && rankings.size() < expected; ++k) {
     say(diagnoser.step({.utime = recording.state.front().utime, .valid = true}));
     std::this_thread::sleep_for(std::chrono::milliseconds{1});
   }

@@ -15,6 +15,8 @@
 // at the speed V past it, its propeller's wash included: lift q V^2 alpha square to the flow, and D_S times q V^2
 // alpha^2 along it (D_S = C_L' / (pi e AR), some .5). F_S, some 1, is the share of what that law adds to the lift: that
 // a drifting fin resists being carried across, in the wash most of all, leans back, and stalls by its whole angle.
+// A vehicle file that names a standard set and its coefficients (`hydrodynamics: {model: mmg_3}`) gives one law more:
+// what was published of the craft beside its base model, times a share, some 1 (standard_set.hpp).
 // Every craft that steers by its flow has that, and no free force is told from others beside a base model that lacks
 // it: so it is asked for before anything else. Ignores: stall of the hull. Revealed by drifting and turning at several
 // speeds ahead and astern, and at rest. Confused with linear drag across at one speed, with masses that serve inertia
@@ -26,6 +28,7 @@
 #include <utility>
 
 #include "common/model/actuators.hpp"
+#include "common/model/manoeuvring/standard_set.hpp"
 #include "common/model/speed_products.hpp"
 
 namespace fathom::model::effects {
@@ -44,8 +47,10 @@ constexpr std::array kBodyLiftParameters{EffectParameter{.name = "coefficient", 
                                          EffectParameter{.name = "H_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "E_H", .unit = "", .sigma = 0.5},
                                          EffectParameter{.name = "D_H", .unit = "1/rad", .sigma = 0.5},
-                                         EffectParameter{.name = "F_H", .unit = "", .sigma = 1.0}};
+                                         EffectParameter{.name = "F_H", .unit = "", .sigma = 1.0},
+                                         EffectParameter{.name = "share", .unit = "", .sigma = 1.0, .low = 0.0}};
 constexpr std::size_t kSideways = 1, kUpAndDown = 7;  // where the numbers of each begin
+constexpr std::size_t kShare = kBodyLiftParameters.size() - 1;
 constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kSuction = 3, kDrag = 4, kWhole = 5;
 constexpr double kSlowest = 0.02;  // m/s, rad/s RMS: less shows no lift
 constexpr double kNoFlow = 1e-9;   // m/s: no angle to a flow that is none
@@ -139,6 +144,27 @@ class LiftingSurfaces final : public Form {
   std::string name_;
 };
 
+/// The set that the vehicle file names, as published.
+class PublishedSet final : public Form {
+ public:
+  PublishedSet() : Form{{.sought = {kShare}}} {}
+  FormName name(const Scene& scene) const override {
+    const auto& h = scene.vehicle->hydrodynamics;
+    const bool beyond_base = h && h->named && !h->coefficients.empty() && h->set->name != "fossen_lumped";
+    return when(beyond_base && lives_by_flow(*scene.vehicle) && scene.nu_rms.maxCoeff() > kSlowest,
+                beyond_base ? "as published: " + std::string{h->set->name} : std::string{});
+  }
+  Starts starts(const Scene&) const override {
+    std::vector<double> start(parameters().size(), 0.0);
+    start[kShare] = 1.0;
+    return {start};
+  }
+  void load(const Motion& motion, EffectTheta theta, Load& load) const override {
+    if (theta[kShare] == 0.0 || motion.vehicle == nullptr || !motion.vehicle->hydrodynamics) return;
+    load.wrench += theta[kShare] * beside_base(*motion.vehicle, motion);
+  }
+};
+
 Forms every_product() {
   using Sense = SpeedProduct::Sense;
   constexpr std::array<std::array<Eigen::Index, 2>, 8> kLoadedBy{
@@ -152,6 +178,7 @@ Forms every_product() {
     all.push_back(std::make_unique<LiftingSurfaces>(across, false, "hull" + way));
     all.push_back(std::make_unique<LiftingSurfaces>(across, true, "hull and fins" + way));
   }
+  all.push_back(std::make_unique<PublishedSet>());
   return all;
 }
 

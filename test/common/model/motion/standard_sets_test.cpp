@@ -6,14 +6,17 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/base/spatial.hpp"
 #include "common/model/actuators.hpp"
 #include "common/model/derivative_motion.hpp"
 #include "common/model/dynamics.hpp"
+#include "common/model/effect.hpp"
 #include "common/model/manoeuvres.hpp"
 #include "common/model/manoeuvring/standard_set.hpp"
+#include "common/model/scene.hpp"
 #include "common/model/vehicle.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/virtual_dive.hpp"
@@ -31,6 +34,12 @@ Manoeuvre turn_of(const Vehicle& vehicle, double rudder, double rate) {
   manoeuvre.rudder = rudder;
   manoeuvre.rudder_rate = rate;
   return manoeuvre;
+}
+
+/// Without its effects.
+Model nominal(Model model) {
+  model.effects.clear();
+  return model;
 }
 
 /// Nothing but velocities, level; the actuators give nothing.
@@ -185,6 +194,60 @@ TEST_CASE("standard sets: drag along each axis with added mass is the base model
   motion.force = ActuatorForces::Zero(6);
   Load load;
   CHECK((generalised_force(base, motion, load) - wrench).norm() < 1e-12);
+}
+
+TEST_CASE("standard sets: beside a base model of the same masses, what was published is whole") {
+  const Effect& lift = *find_effect("body_lift");
+  std::vector<double> as_published(lift.parameters().size(), 0.0);
+  as_published.back() = 1.0;
+  REQUIRE(lift.parameters().back().name == "share");
+  for (const char* name : {"remus100", "kvlcc2_l3", "slocum"}) {
+    CAPTURE(name);
+    Vehicle vehicle = test::vehicle_from_repository(name);
+    Hydrodynamics& h = *vehicle.hydrodynamics;
+    h.added_mass = Matrix6d{h.added_mass.diagonal().asDiagonal()};  // a base model has no more
+    h.p_BG.setZero();
+    Model base = nominal_model(vehicle, false);
+    base.theta = nearest_base(vehicle);
+    Vector6d nu;
+    nu << 0.7, 0.05, -0.04, 0.02, 0.03, -0.06;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      if (!h.set->moves[static_cast<std::size_t>(i)]) nu[i] = 0.0;
+    }
+    Motion motion = moving(vehicle, nu);
+    for (Eigen::Index i = 0; i < motion.force.size(); ++i) motion.force[i] = 0.3 + 0.1 * static_cast<double>(i);
+    const Vector6d published = rigid_wrench(vehicle, Eigen::Vector3d::UnitZ(), nu) + hull_wrench(vehicle, motion) +
+                               h.set->pushed(vehicle, motion);
+    // Drag along each axis by its own velocity belongs to the base model: of a series, what it gives alone.
+    Load load;
+    Vector6d told = generalised_force(base, motion, load);
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      TermMotion alone{nu[i] * Vector6d::Unit(i)};
+      told[i] +=
+          manoeuvring_wrench(h.coefficients, alone, h.lengths(vehicle.water_density))[i] - hull_drag(base, nu)[i];
+    }
+    CHECK((told - published).norm() > 0.01 * published.norm());
+    base.add({&lift, lift.form_count() - 1, "as published", as_published});
+    Vector6d with = generalised_force(base, motion, load) + told - generalised_force(nominal(base), motion, load);
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      CAPTURE(i);
+      if (h.set->moves[static_cast<std::size_t>(i)]) CHECK(with[i] == doctest::Approx(published[i]).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("standard sets: what was published is asked of who names it, and of no other") {
+  const auto asked = [](const Vehicle& vehicle) {
+    Scene scene{.vehicle = &vehicle};
+    scene.nu_rms.setConstant(0.3);
+    scene.tau_rms.setConstant(1.0);
+    return find_effect("body_lift")->variants(scene);
+  };
+  Vehicle ship = test::vehicle_from_repository("kvlcc2_l3");
+  CHECK(asked(ship).back() == "as published: mmg_3");
+  ship.hydrodynamics->named = false;
+  CHECK(asked(ship).back() == "-");
+  CHECK(asked(test::vehicle_from_repository("pap104_half")).empty());  // a truth of ours, of an open frame
 }
 
 TEST_CASE("standard sets: who names none that there is, or leaves out what it needs, is told in one line") {
