@@ -125,6 +125,23 @@ TEST_CASE("search: what a boat's flow does by nature is found whole, and takes n
   CHECK(effects[1].theta[0] == doctest::Approx(96.0).epsilon(0.2));
 }
 
+TEST_CASE("search: what was published of a ship is found as a share of it, and takes no place among the names") {
+  const model::Vehicle ship = test::vehicle_from_repository("kvlcc2_l3");
+  const model::Effect& lift = *model::find_effect("body_lift");
+  std::vector<double> published(lift.parameters().size(), 0.0);
+  published.back() = 0.9;
+  const int form = lift.form_count() - 1;
+  const Conclusion found =
+      inferred({.duration = 240.0, .seed = 9, .force = 0.002, .effects = {test::active("body_lift", published, form)}},
+               {}, "kvlcc2_l3");
+  CHECK(found.verdict == Verdict::effect);
+  REQUIRE_FALSE(found.found.best.names.empty());
+  const auto& effects = found.found.best.fit.hypothesis.model.effects;
+  CHECK(claims(effects) == 0);
+  REQUIRE(effects[0].variant_name == "as published: mmg_3");
+  CHECK(effects[0].theta.back() == doctest::Approx(0.9).epsilon(0.1));
+}
+
 TEST_CASE("search: a thruster whose jet crosses another's is told from thrusters that are weak") {
   model::Vehicle crossed = test::vehicle_from_repository("bluerov2");
   const model::Thruster& blows = crossed.thrusters[0];
