@@ -79,8 +79,8 @@ Flow flow_of(const Hydrodynamics& h, const Motion& motion) {
   flow.beta = flow.U > kNoFlow ? std::atan2(-nu_r[1], nu_r[0]) : 0.0;
   flow.r_dash = flow.U > kNoFlow ? nu_r[5] * h.length / flow.U : 0.0;
   const double beta_P = flow.beta - i.x_P * flow.r_dash;
-  const double C_2 = i.C_2[beta_P > 0.0 ? 1 : 0];
-  flow.wake = 1.0 - (1.0 - i.w_P) * (1.0 + (1.0 - std::exp(-i.C_1 * std::abs(beta_P))) * (C_2 - 1.0));
+  const double changed_to = i.C_2[beta_P > 0.0 ? 1 : 0];
+  flow.wake = 1.0 - (1.0 - i.w_P) * (1.0 + (1.0 - std::exp(-i.C_1 * std::abs(beta_P))) * (changed_to - 1.0));
   return flow;
 }
 

@@ -139,11 +139,11 @@ TEST_CASE("standard sets: a glider glides where its closed form says") {
   motion.nu[0] = V * std::cos(alpha);
   motion.nu[2] = V * std::sin(alpha);
   motion.R_WB = rotation_from_euler({0.0, theta, 0.0});
-  const Eigen::Vector3d weight_B = net * motion.R_WB.row(2).transpose();
+  const Eigen::Vector3d F_weight_B = net * motion.R_WB.row(2).transpose();
   const Vector6d water = hull_wrench(glider, motion);
   CHECK(alpha / kDegree == doctest::Approx(2.1).epsilon(0.1));
   CHECK(V == doctest::Approx(0.45).epsilon(0.1));
-  CHECK((water.head<3>() + weight_B).norm() < 1e-9);
+  CHECK((water.head<3>() + F_weight_B).norm() < 1e-9);
   // The Munk moment of its added masses and its own: nose down where it sinks.
   CHECK(water[4] == doctest::Approx((70.0 - 5.0) * motion.nu[0] * motion.nu[2] - 100.0 * alpha * V * V));
 }
