@@ -21,7 +21,8 @@ void add_plan(runtime::CommandLine& app);
 /// Two vehicle files flown through one manoeuvre, or files of coefficients: for `vehicle`, or for the first one's.
 struct ManoeuvreComparison {
   std::string first, second, name, plot, vehicle;
-  bool over{false};  ///< coefficients stand over the vehicle's own, which fill the gaps of an incomplete set
+  bool over{false};     ///< coefficients stand over the vehicle's own, which fill the gaps of an incomplete set
+  double rudder{20.0};  ///< deg, of who steers by rudders; its zigzag turns back at the same heading
 };
 void compare_manoeuvre(const ManoeuvreComparison& asked);
 void add_decode(runtime::CommandLine& app);

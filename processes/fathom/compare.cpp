@@ -16,6 +16,7 @@ namespace {
 struct CompareOptions {
   std::string first, second, manoeuvre, plot, vehicle;
   bool intervals{false}, over{false};
+  double rudder{20.0};  // deg
 };
 
 ModelEstimate last_model(const std::string& path) {
@@ -51,7 +52,8 @@ void run_compare(const CompareOptions& options) {
                        .name = options.manoeuvre,
                        .plot = options.plot,
                        .vehicle = options.vehicle,
-                       .over = options.over});
+                       .over = options.over,
+                       .rudder = options.rudder});
     return;
   }
   const ModelEstimate a = last_model(options.first), b = last_model(options.second);
@@ -84,6 +86,8 @@ void add_compare(runtime::CommandLine& app) {
   command->add_option("--manoeuvre", options->manoeuvre, "line, zigzag or circle: fly both and compare");
   command->add_option("--vehicle", options->vehicle, "of --manoeuvre: whose coefficients both files are");
   command->add_flag("--over", options->over, "coefficients alone: over the vehicle's own, which fill what they lack");
+  command->add_option("--rudder", options->rudder, "of --manoeuvre: deg, of craft that steer by rudders")
+      ->within(1.0, 60.0);
   command->add_option("--plot", options->plot, "write the two tracks of the manoeuvre to this SVG file");
   command->callback([options] { run_compare(*options); });
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 
 #include "common/base/config.hpp"
@@ -17,7 +18,8 @@ namespace {
 
 using Flight = std::vector<model::FlightMoment>;
 
-constexpr double kEvery = 0.1;  // s
+constexpr double kEvery = 0.1;                        // s
+constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 /// A vehicle file, or a file of coefficients alone for the vehicle `base`: in place of all of its own, or `over` them.
 model::Vehicle vehicle_of(const std::string& path, const model::Vehicle* base, bool over) {
@@ -114,14 +116,16 @@ std::string axes(const Flight& one, const Flight& two, const report::Figure& fig
 }  // namespace
 
 void compare_manoeuvre(const ManoeuvreComparison& asked) {
-  const auto& [first, second, name, plot, vehicle, over] = asked;
+  const auto& [first, second, name, plot, vehicle, over, rudder] = asked;
   std::optional<model::Vehicle> base;
   if (!vehicle.empty()) base = model::Vehicle::load(vehicle);
   const model::Vehicle a = vehicle_of(first, base ? &*base : nullptr, over);
   const model::Vehicle b = vehicle_of(second, base ? &*base : &a, over);
-  const model::Manoeuvre manoeuvre = model::manoeuvre_for(a, name);
+  model::Manoeuvre manoeuvre = model::manoeuvre_for(a, name);
   if (model::steered_by_rudder(a) != model::steered_by_rudder(b))
     throw InputError("one of the two steers by a rudder, the other by thrusters: their manoeuvres are not alike");
+  const bool steered = model::steered_by_rudder(a);
+  if (steered) manoeuvre.rudder = manoeuvre.swing = rudder * kDegree;
   std::optional<model::Divergence> lost_a, lost_b;
   Flight one = model::fly(a, manoeuvre, kEvery, nullptr, &lost_a);
   Flight two = model::fly(b, manoeuvre, kEvery, nullptr, &lost_b);
@@ -135,8 +139,12 @@ void compare_manoeuvre(const ManoeuvreComparison& asked) {
   one.resize(both);
   two.resize(both);
   const Figures x = figures_of(one, manoeuvre), y = figures_of(two, manoeuvre);
-  std::printf("%s, %.0f s, the same thrusters' rule for both; means over the second half\n%-28s %12s %12s\n",
-              name.c_str(), one.back().t, "", "first", "second");
+  char rule[96] = "the same thrusters' rule for both";
+  if (steered)
+    std::snprintf(rule, sizeof rule, "rudder at %g deg, each from its cruising speed, which its propellers keep",
+                  rudder);
+  std::printf("%s, %.0f s, %s; means over the second half\n%-28s %12s %12s\n", name.c_str(), one.back().t, rule, "",
+              "first", "second");
   line("speed", x.speed, y.speed, "m/s");
   line("drift angle", x.drift, y.drift, "rad");
   line("pitch", x.pitch, y.pitch, "rad");

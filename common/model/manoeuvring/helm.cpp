@@ -14,6 +14,8 @@ namespace {
 constexpr double kSideways = 0.7;  // of a unit axis: a rudder's force, not a plane's
 constexpr double kMost = 1e9;      // N: no propeller gives as much
 constexpr int kHalvings = 60;
+constexpr double kStraight = 2.0;  // lengths ahead before it turns: the course is held
+constexpr double kTurned = 40.0;   // lengths in all: two circles of a ship that turns hard and loses half of its speed
 
 bool is_rudder(const Thruster& one) { return one.fin && std::abs(one.axis_B.y()) > kSideways; }
 
@@ -33,7 +35,11 @@ Manoeuvre manoeuvre_for(const Vehicle& vehicle, const std::string& name) {
   if (!steered_by_rudder(vehicle)) return {.kind = manoeuvre_from(name)};
   const double length = vehicle.hydrodynamics ? vehicle.hydrodynamics->length : 0.0;
   const double passed = length / cruise_of(vehicle);  // s in which it goes its own length
-  return {.kind = manoeuvre_from(name), .rest = 0.0, .straight = 2.0 * passed, .duration = 40.0 * passed};
+  const Manoeuvre preset{.kind = manoeuvre_from(name)};
+  return {.kind = preset.kind,
+          .rest = 0.0,
+          .straight = kStraight * passed,
+          .duration = std::max(kTurned * passed, preset.duration)};
 }
 
 Helm::Helm(const Vehicle& vehicle, const Manoeuvre& manoeuvre)
@@ -41,7 +47,9 @@ Helm::Helm(const Vehicle& vehicle, const Manoeuvre& manoeuvre)
       manoeuvre_{manoeuvre},
       steered_{steered_by_rudder(vehicle)},
       force_{ActuatorForces::Zero(vehicle.allocation.cols())} {
-  if (!steered_ && vehicle.thrusters.size() != 2)
+  const bool pair = vehicle.thrusters.size() == 2 &&
+                    std::ranges::none_of(vehicle.thrusters, [](const Thruster& one) { return one.fin || one.weight; });
+  if (!steered_ && !pair)
     throw InputError(vehicle.name + ": these manoeuvres are flown with two thrusters, or with a rudder");
   if (steered_) keep_cruise();
 }

@@ -8,6 +8,7 @@
 
 #include "common/wire/log_reader.hpp"
 #include "common/wire/log_writer.hpp"
+#include "test/support/offline_tool.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
 #include "test/support/timing.hpp"
@@ -119,7 +120,7 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said
   const auto bad =
       shell(program("fathom") + " compare " + kVehicle + " " + scratch.path("bad.yaml") + " --manoeuvre line");
   CHECK(bad.code == 1);
-  CHECK_MESSAGE(bad.says("'X_uuu' is no hydrodynamic derivative"), bad.text);
+  CHECK_MESSAGE(bad.says("'X_uuu' is no coefficient of gertler_submarine"), bad.text);
 }
 
 TEST_CASE("fathom smooth and regress: an instrument of which more is refused than outliers are is named by both") {
@@ -135,6 +136,28 @@ TEST_CASE("fathom smooth and regress: an instrument of which more is refused tha
     CHECK_MESSAGE(ran.code == 0, ran.text);
     CHECK_MESSAGE(ran.says("zigzag: depth: 28 % refused; its noise is stated too small"), ran.text);
   }
+}
+
+TEST_CASE("fathom compare --manoeuvre: craft that steer by rudders turn as their published sets say") {
+  const test::Scratch scratch;
+  const std::string vehicles = std::string{FATHOM_SOURCE_DIR} + "/config/vehicles/";
+  const std::string compare = program("fathom") + " compare " + vehicles + "kvlcc2_l3.yaml ";
+  test::write_bytes(scratch.path("sway.yaml"), "coefficients: {Y_v: -0.25}\n");
+  const auto turned = shell(compare + scratch.path("sway.yaml") + " --over --manoeuvre circle --rudder 35");
+  REQUIRE_MESSAGE(turned.code == 0, turned.text);
+  CHECK_MESSAGE(turned.says("rudder at 35 deg, each from its cruising speed"), turned.text);
+  CHECK_MESSAGE(turned.says("tactical diameter"), turned.text);
+  CHECK_MESSAGE(!turned.says("largest: 0.00 m"), turned.text);
+  const auto swung = shell(compare + vehicles + "kvlcc2_l3.yaml --manoeuvre zigzag --rudder 10");
+  REQUIRE_MESSAGE(swung.code == 0, swung.text);
+  CHECK_MESSAGE(swung.says("overshoot of heading"), swung.text);
+  test::one_line(shell(compare + kVehicle + " --manoeuvre circle"), 1, "one of the two steers by a rudder");
+  test::write_bytes(scratch.path("gertler.yaml"), "coefficients: {Y_vw: -0.3}\n");
+  test::one_line(shell(compare + scratch.path("gertler.yaml") + " --manoeuvre circle"), 1,
+                 "'Y_vw' is no coefficient of mmg_3");
+  const std::string glider = vehicles + "slocum.yaml ";
+  test::one_line(shell(program("fathom") + " compare " + glider + glider + "--manoeuvre circle"), 1,
+                 "flown with two thrusters, or with a rudder");
 }
 
 TEST_CASE("fathom compare --manoeuvre: the paper's tables are flown, and what diverges says when, where and by what") {
