@@ -98,8 +98,8 @@ Vector6d derivative_acceleration(const Model& model, const Motion& motion, const
   const Vehicle& vehicle = *model.vehicle;
   Load load;
   load.clear();
-  load.drag = hull_wrench(vehicle, motion);
-  Vector6d force = motion.w_memory + load.drag + attached.umbilical + attached.chain +
+  load.drag = by_coefficients(vehicle, motion);
+  Vector6d force = motion.w_memory + load.drag + added_coriolis(vehicle, motion) + attached.umbilical + attached.chain +
                    rigid_wrench(vehicle, motion.R_WB.row(2).transpose(), motion.nu);
   if (model.motion_matters) {
     force += vehicle.hydrodynamics->set->pushed(vehicle, motion);

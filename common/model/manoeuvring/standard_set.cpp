@@ -33,6 +33,14 @@ bool among(const Hydrodynamics& h, Eigen::Index axis) {
   });
 }
 
+/// C nu of a momentum [N, N m]: w x P, w x L + v x P.
+Vector6d coriolis(const Vector6d& nu, const Vector6d& momentum) {
+  const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>(), P = momentum.head<3>(), L = momentum.tail<3>();
+  Vector6d both;
+  both << w.cross(P), w.cross(L) + v.cross(P);
+  return both;
+}
+
 }  // namespace
 
 const ManoeuvringTerm* StandardSet::find(std::string_view term) const {
@@ -80,42 +88,42 @@ TermMotion term_motion(const Vehicle& vehicle, const Motion& motion) {
   return seen;
 }
 
-Vector6d hull_wrench(const Vehicle& vehicle, const Motion& motion) {
+Vector6d by_coefficients(const Vehicle& vehicle, const Motion& motion) {
   const Hydrodynamics& h = *vehicle.hydrodynamics;
-  Vector6d wrench = manoeuvring_wrench(h.coefficients, term_motion(vehicle, motion), h.lengths(vehicle.water_density));
+  return manoeuvring_wrench(h.coefficients, term_motion(vehicle, motion), h.lengths(vehicle.water_density));
+}
+
+Vector6d added_coriolis(const Vehicle& vehicle, const Motion& motion) {
+  const Hydrodynamics& h = *vehicle.hydrodynamics;
+  Vector6d wrench = Vector6d::Zero();
   if (h.set->coriolis == AddedCoriolis::kAmongTerms) return wrench;
-  const Vector6d nu_r = motion.nu_r(), momentum = h.added_mass * nu_r;
-  const Eigen::Vector3d w = nu_r.tail<3>(), linear = momentum.head<3>(), angular = momentum.tail<3>();
-  wrench.head<3>() -= w.cross(linear);
-  if (h.set->coriolis == AddedCoriolis::kWhole) {
-    const Eigen::Vector3d v = nu_r.head<3>();
-    wrench.tail<3>() -= w.cross(angular) + v.cross(linear);
-  }
+  const Vector6d nu_r = motion.nu_r();
+  const Vector6d all = coriolis(nu_r, h.added_mass * nu_r);
+  wrench.head<3>() = -all.head<3>();
+  if (h.set->coriolis == AddedCoriolis::kWhole) wrench.tail<3>() = -all.tail<3>();
   return wrench;
+}
+
+Vector6d hull_wrench(const Vehicle& vehicle, const Motion& motion) {
+  return by_coefficients(vehicle, motion) + added_coriolis(vehicle, motion);
 }
 
 Vector6d beside_base(const Vehicle& vehicle, const Motion& motion) {
   const Hydrodynamics& h = *vehicle.hydrodynamics;
   const TermLengths lengths = h.lengths(vehicle.water_density);
   const Vector6d nu_r = motion.nu_r();
-  Vector6d wrench = manoeuvring_wrench(h.coefficients, term_motion(vehicle, motion), lengths);
+  Vector6d wrench = by_coefficients(vehicle, motion);
   for (Eigen::Index i = h.set->needs_cruise ? 1 : 0; i < 6; ++i) {
     TermMotion alone{nu_r[i] * Vector6d::Unit(i)};
     alone.cruise = h.cruise;
     wrench[i] -= manoeuvring_wrench(h.coefficients, alone, lengths)[i];
   }
-  const auto turned = [](const Vector6d& nu, const Vector6d& momentum) {  // C nu of this momentum
-    const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>(), P = momentum.head<3>(), L = momentum.tail<3>();
-    Vector6d both;
-    both << w.cross(P), w.cross(L) + v.cross(P);
-    return both;
-  };
   if (h.set->coriolis != AddedCoriolis::kWhole) {
-    const Vector6d added = turned(nu_r, h.added_mass * nu_r);
+    const Vector6d added = coriolis(nu_r, h.added_mass * nu_r);
     wrench.tail<3>() += added.tail<3>();
     if (h.set->coriolis == AddedCoriolis::kAmongTerms) wrench.head<3>() += added.head<3>();
   }
-  if (!h.rigid_coriolis) wrench += turned(motion.nu, rigid_inertia(vehicle) * motion.nu);
+  if (!h.rigid_coriolis) wrench += coriolis(motion.nu, rigid_inertia(vehicle) * motion.nu);
   if (!vehicle.thrusters.empty() && motion.force.size() == static_cast<Eigen::Index>(vehicle.thrusters.size()))
     wrench += h.set->pushed(vehicle, motion) - acting_wrench(vehicle, motion);
   return wrench;

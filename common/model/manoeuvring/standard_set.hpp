@@ -50,8 +50,11 @@ struct StandardSet {
 /// Velocities past the water and the angles of rudders and planes: means of those that push sideways, and up and down.
 [[nodiscard]] TermMotion term_motion(const Vehicle& vehicle, const Motion& motion);
 
-/// What the water does to the hull by the vehicle's set: its coefficients, and what of added mass' Coriolis terms is
-/// not among them [N, N m]. The vehicle has hydrodynamics.
+/// What the water does to the hull by the vehicle's set [N, N m]: by its coefficients, and what of added mass' Coriolis
+/// terms is not among them. The vehicle has hydrodynamics.
+[[nodiscard]] Vector6d by_coefficients(const Vehicle& vehicle, const Motion& motion);
+[[nodiscard]] Vector6d added_coriolis(const Vehicle& vehicle, const Motion& motion);
+/// Both.
 [[nodiscard]] Vector6d hull_wrench(const Vehicle& vehicle, const Motion& motion);
 
 /// What the set has beside a base model of the same masses and actuators [N, N m]: its wrench without drag along each
