@@ -5,42 +5,17 @@
 // name stands for u - U_0, letters in the order u v r d. The propeller, at the speed that keeps U_0, is among them, and
 // so is the rudder. Many tables hold the rigid body's Coriolis terms as well (`rigid_coriolis: among_coefficients`).
 #include <array>
-#include <cmath>
 
+#include "common/model/manoeuvring/series.hpp"
 #include "common/model/manoeuvring/standard_set.hpp"
 
 namespace fathom::model {
 namespace abkowitz_set {
 namespace {
 
-constexpr double kNoFlow = 1e-9;  // m/s: no speed to divide by
-
-template <int n>
-double power(double x) {
-  double product = 1.0;
-  for (int i = 0; i < n; ++i) product *= x;
-  return product;
-}
-
-/// U^2 (du/U)^a (v/U)^b (r/U)^c d^e; r L/U has its L among the powers of the length.
-template <int a, int b, int c, int e>
-double product(const TermMotion& n) {
-  const double U = std::hypot(n[0], n[1]);
-  if (U < kNoFlow) return 0.0;
-  const double numbers = power<a>(n[0] - n.cruise) * power<b>(n[1]) * power<c>(n[5]) * power<e>(n.rudder);
-  constexpr int order = a + b + c;
-  if constexpr (order > 2) return numbers / power<order - 2>(U);
-  return numbers * power < order <= 2 ? 2 - order : 0 > (U);
-}
-
 template <int a, int b, int c, int e>
 constexpr ManoeuvringTerm term(std::string_view name, int axis) {
-  return {.name = name,
-          .axis = axis,
-          .power = (axis == 5 ? 3 : 2) + c,
-          .value = product<a, b, c, e>,
-          .scale = TermScale::kLength,
-          .steers = e > 0};
+  return series_term<a, b, c, e>(name, axis, TermScale::kLength);
 }
 
 constexpr std::array<ManoeuvringTerm, 61> kTerms{

@@ -43,6 +43,7 @@ const StandardSet& fossen_lumped() {
                                .terms = fossen_lumped_set::kTerms,
                                .moves = {true, true, true, true, true, true},
                                .coriolis = AddedCoriolis::kWhole,
+                               .is_base = true,
                                .pushed = acting_wrench};
   return set;
 }

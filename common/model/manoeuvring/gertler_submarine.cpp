@@ -94,8 +94,6 @@ constexpr std::array<ManoeuvringTerm, 70> kTerms{{
 }  // namespace
 }  // namespace gertler_submarine_set
 
-std::span<const ManoeuvringTerm> manoeuvring_terms() { return gertler_submarine_set::kTerms; }
-
 const StandardSet& gertler_submarine() {
   static const StandardSet set{.name = "gertler_submarine",
                                .source = "Gertler and Hagen 1967, Feldman 1979",

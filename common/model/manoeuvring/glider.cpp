@@ -1,6 +1,6 @@
 // Gliders: lift, drag and moment as polynomials of the angle of attack a = atan2(w, u), times the square of the speed V
 // in the vertical plane, and damping in pitch (J. G. Graver, "Underwater gliders: dynamics, control and design",
-// Princeton 2005, eqs. 3.25 to 3.27; N. E. Leonard and J. G. Graver, IEEE J. Oceanic Eng. 26(4), 2001):
+// Princeton 2005; N. E. Leonard and J. G. Graver, IEEE J. Oceanic Eng. 26(4), 2001):
 //   D = (K_D0 + K_D a^2) V^2 against the flow   L = (K_L0 + K_L a) V^2 square to it   M = (K_M0 + K_M a + K_q2 q) V^2 +
 //   K_q1 q
 // Coefficients in SI units and radians; all of added mass' Coriolis terms stand beside them.

@@ -1,15 +1,8 @@
 #include "common/model/manoeuvring/manoeuvring_terms.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace fathom::model {
-
-const ManoeuvringTerm* find_manoeuvring_term(std::string_view name) {
-  const auto all = manoeuvring_terms();
-  const auto found = std::ranges::find(all, name, &ManoeuvringTerm::name);
-  return found == all.end() ? nullptr : &*found;
-}
 
 double manoeuvring_scale(const ManoeuvringTerm& term, const TermLengths& lengths) {
   switch (term.scale) {

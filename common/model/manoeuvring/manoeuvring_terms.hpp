@@ -48,11 +48,6 @@ struct TermLengths {
   double density{};  ///< kg/m^3, of the water
 };
 
-/// The standard submarine equations (Gertler and Hagen 1967, Feldman 1979), axis by axis. Pereira and Duncan's eqs. 2
-/// and 5 and their Tables 1 to 6 are among them.
-[[nodiscard]] std::span<const ManoeuvringTerm> manoeuvring_terms();
-/// One of these; nothing when none has this name.
-[[nodiscard]] const ManoeuvringTerm* find_manoeuvring_term(std::string_view name);
 /// What turns a term's number into N or N m per unit of its product.
 [[nodiscard]] double manoeuvring_scale(const ManoeuvringTerm& term, const TermLengths& lengths);
 

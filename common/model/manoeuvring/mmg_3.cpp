@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common/model/actuators.hpp"
+#include "common/model/manoeuvring/series.hpp"
 #include "common/model/manoeuvring/standard_set.hpp"
 #include "common/model/motion.hpp"
 #include "common/model/vehicle.hpp"
@@ -19,31 +20,11 @@ namespace {
 constexpr double kNoFlow = 1e-9;    // m/s: no speed to divide by
 constexpr double kSternway = 1e-3;  // m/s at the propeller: below it no advance ratio is told
 
-template <int n>
-double power(double x) {
-  double product = 1.0;
-  for (int i = 0; i < n; ++i) product *= x;
-  return product;
-}
-
-/// U^2 (v/U)^b (r/U)^c.
-template <int b, int c>
-double product(const TermMotion& n) {
-  const double U = std::hypot(n[0], n[1]);
-  if (U < kNoFlow) return 0.0;
-  const double numbers = power<b>(n[1]) * power<c>(n[5]);
-  if constexpr (b + c > 2) return numbers / power<b + c - 2>(U);
-  return numbers * power < b + c <= 2 ? 2 - b - c : 0 > (U);
-}
-double resistance(const TermMotion& n) { return -product<0, 0>(n); }
+double resistance(const TermMotion& n) { return -of_series<0, 0, 0, 0>(n); }
 
 template <int b, int c>
 constexpr ManoeuvringTerm term(std::string_view name, int axis) {
-  return {.name = name,
-          .axis = axis,
-          .power = (axis == 5 ? 3 : 2) + c,
-          .value = product<b, c>,
-          .scale = TermScale::kDraught};
+  return series_term<0, b, c, 0>(name, axis, TermScale::kDraught);
 }
 
 constexpr std::array<ManoeuvringTerm, 19> kTerms{
@@ -91,7 +72,7 @@ double thrust_of(const Hydrodynamics& h, const Vehicle& vehicle, const Thruster&
   return told - one.inflow * size * u_P + (told > 0.0 && u_P > 0.0 ? square * u_P * u_P : 0.0);
 }
 
-/// Flow along a rudder behind a propeller of this thrust: eq. 25 of the paper with K_T / J^2 = T / (rho D^2 u_P^2).
+/// Flow along a rudder behind a propeller of this thrust, with K_T / J^2 = T / (rho D^2 u_P^2).
 double along_rudder(const Hydrodynamics& h, const Vehicle& vehicle, double diameter, double thrust, const Flow& flow) {
   const Interaction& i = *h.interaction;
   const double u_P = flow.u * (1.0 - flow.wake);

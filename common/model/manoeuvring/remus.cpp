@@ -1,5 +1,5 @@
 // Torpedoes with four fins astern: T. Prestero, "Verification of a six-degree of freedom simulation model for the REMUS
-// autonomous underwater vehicle", MIT/WHOI 2001, ch. 4 and appendix A. Coefficients in SI units; those of added mass'
+// autonomous underwater vehicle", MIT/WHOI 2001. Coefficients in SI units; those of added mass'
 // Coriolis terms (X_wq, Y_wp, ...) and of the fins at no deflection are among them. X_prop and K_prop [N, N m]: the
 // propeller at the speed of which they are told; left out where the vehicle file has a propeller.
 #include <array>

@@ -28,6 +28,7 @@ struct StandardSet {
   std::span<const ManoeuvringTerm> terms;
   std::array<bool, 6> moves{};  ///< motions that it describes, u to r; the others do not change
   AddedCoriolis coriolis{};
+  bool is_base{false};  ///< the base model has all of it
   bool needs_draught{false};
   bool needs_cruise{false};  ///< it is an expansion about a speed ahead
   /// Wrench [N, N m] of the actuators as the set has it, given their forces in motion.force.

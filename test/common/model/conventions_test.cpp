@@ -189,14 +189,14 @@ TEST_CASE("conventions: both papers say the same in these words") {
           const Vehicle lbv = test::vehicle_from_repository("seabotix_lbv150");
           const Model table = nominal_model(lbv, true);
           CHECK(table.theta[index(BaseParameter::X_u)] == doctest::Approx(-8.604));
-          const std::vector<ManoeuvringCoefficient> X_uu{{.term = find_manoeuvring_term("X_uu"), .value = -0.03}};
+          const std::vector<ManoeuvringCoefficient> X_uu{{.term = gertler_submarine().find("X_uu"), .value = -0.03}};
           CHECK(manoeuvring_wrench(X_uu, {Vector6d::Unit(0)}, {.length = 1.35, .density = 1025.0})[0] < 0.0);
           CHECK(manoeuvring_wrench(X_uu, {-Vector6d::Unit(0)}, {.length = 1.35, .density = 1025.0})[0] < 0.0);
         }},
        {"N, N/(m/s), N/(m/s)^2",
         [] {
           const auto scale = [](const char* name) {
-            return manoeuvring_scale(*find_manoeuvring_term(name), {.length = 2.0, .density = 1000.0});
+            return manoeuvring_scale(*gertler_submarine().find(name), {.length = 2.0, .density = 1000.0});
           };
           CHECK(scale("X_uu") == doctest::Approx(500.0 * 4));   // two velocities: L^2
           CHECK(scale("Y_ur") == doctest::Approx(500.0 * 8));   // one rate: L^3

@@ -150,7 +150,7 @@ class PublishedSet final : public Form {
   PublishedSet() : Form{{.sought = {kShare}}} {}
   FormName name(const Scene& scene) const override {
     const auto& h = scene.vehicle->hydrodynamics;
-    const bool beyond_base = h && h->named && !h->coefficients.empty() && h->set->name != "fossen_lumped";
+    const bool beyond_base = h && h->named && !h->coefficients.empty() && !h->set->is_base;
     return when(beyond_base && lives_by_flow(*scene.vehicle) && scene.nu_rms.maxCoeff() > kSlowest,
                 beyond_base ? "as published: " + std::string{h->set->name} : std::string{});
   }

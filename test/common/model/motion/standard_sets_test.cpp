@@ -1,5 +1,5 @@
-// Standard sets of the equations of motion against what is published of their vehicles: manoeuvres of ships, the steady
-// glide of a glider, a torpedo's forces by hand.
+// Standard sets with the numbers that are published of vehicles, against other programs' integration of the same
+// equations (turns of ships), closed forms (a glider's steady glide) and sums by hand (a torpedo).
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -71,9 +71,9 @@ TEST_CASE("standard sets: each has a name, a source, terms of its own names, and
   CHECK(standard_set_names().find("abkowitz_3, mmg_3") != std::string::npos);
 }
 
-TEST_CASE("standard sets: the Mariner's turn by its series is the published one") {
-  // T. I. Fossen's Marine Systems Simulator prints of its turn at 15 deg of rudder (5 deg/s): radius 711 m, advance 947
-  // m.
+TEST_CASE("standard sets: the Mariner's turn by its published series is that of another program") {
+  // The equations of mariner.m (T. I. Fossen's Marine Systems Simulator) integrated apart: 100 s straight ahead, then
+  // 15 deg of rudder at 5 deg/s. By then its propeller has turned it to starboard somewhat: Y_0, N_0.
   const Vehicle ship = mariner();
   Manoeuvre manoeuvre = turn_of(ship, 15.0 * kDegree, 5.0 * kDegree);
   manoeuvre.straight = 100.0;
@@ -82,7 +82,6 @@ TEST_CASE("standard sets: the Mariner's turn by its series is the published one"
   REQUIRE(turn.tactical_diameter);
   CHECK(turn.radius == doctest::Approx(711.0).epsilon(0.005));
   CHECK(*turn.advance == doctest::Approx(947.0).epsilon(0.01));
-  // The same series integrated by another program.
   CHECK(*turn.transfer == doctest::Approx(573.2).epsilon(0.01));
   CHECK(*turn.tactical_diameter == doctest::Approx(1344.7).epsilon(0.01));
   CHECK(flight.back().nu.head<2>().norm() == doctest::Approx(6.63).epsilon(0.01));
@@ -96,7 +95,7 @@ TEST_CASE("standard sets: the Mariner's turn by its series is the published one"
 TEST_CASE("standard sets: a tanker's turn by the MMG method is that of the method's equations") {
   // Integrated by another program from the paper's equations and tables (the whole open-water curve; ours is a straight
   // line): advance 3.09, transfer 1.33, tactical diameter 3.10 lengths, at last 1.13 lengths, 19 deg and .38 of the
-  // speed. Free-running models of the ship turn within 2.9 to 3.3 lengths either way.
+  // speed. Other programs quote 2.9 to 3.3 lengths, either way, of free-running models.
   const Vehicle ship = test::vehicle_from_repository("kvlcc2_l3");
   const double length = ship.hydrodynamics->length;
   const Manoeuvre manoeuvre = turn_of(ship, 35.0 * kDegree, 24.0 * kDegree);
@@ -128,7 +127,7 @@ TEST_CASE("standard sets: a tanker's turn by the MMG method is that of the metho
 }
 
 TEST_CASE("standard sets: a glider glides where its closed form says") {
-  // Graver 2005, eqs. 5.10 and 5.16: angle of attack and speed of a steady glide at the angle xi.
+  // Graver 2005: angle of attack and speed of a steady glide at the angle xi.
   const Vehicle glider = test::vehicle_from_repository("slocum");
   constexpr double kD0 = 2.15, kD = 25.0, kL = 132.5, xi = -25.0 * kDegree, net = 1.2;  // N heavy
   const double alpha =
