@@ -65,7 +65,15 @@ Interaction read_interaction(const Config& config) {
                 .eta = number("eta", 1.0)};
   if (config.has("C_2")) i.C_2 = either_way(config, "C_2");
   i.gamma_R = config.has("gamma_R") ? either_way(config, "gamma_R") : std::array<double, 2>{1.0, 1.0};
-  if (i.w_P >= 1.0) config.fail("w_P", "'w_P' is less than 1: the propeller meets some flow");
+  const auto share = [&](const char* key, double value) {
+    if (!(value >= 0.0 && value <= 1.0)) config.fail(key, "'" + std::string{key} + "' must lie from 0 to 1");
+  };
+  share("t_P", i.t_P);
+  share("w_P", i.w_P);
+  share("t_R", i.t_R);
+  share("eta", i.eta);
+  if (i.w_P == 1.0) config.fail("w_P", "'w_P' is less than 1: the propeller meets some flow");
+  if (i.epsilon <= 0.0) config.fail("epsilon", "'epsilon' must be positive: the rudder meets some flow");
   return i;
 }
 

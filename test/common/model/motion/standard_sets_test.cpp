@@ -265,6 +265,14 @@ TEST_CASE("standard sets: who names none that there is, or leaves out what it ne
   CHECK(refused("hydrodynamics:\n  model: mmg\n" + rest).find("'mmg' is no standard set; they are fossen_lumped") !=
         std::string::npos);
   CHECK(refused("hydrodynamics:\n  model: mmg_3\n" + rest).find("needs the 'draught'") != std::string::npos);
+  const std::string ship = "hydrodynamics:\n  model: mmg_3\n  draught: 1 m\n" + rest;
+  CHECK(refused(ship) == "no complaint");
+  CHECK(refused(ship + "  interaction: {eta: 2}\n").find("'eta' must lie from 0 to 1") != std::string::npos);
+  CHECK(refused(ship + "  interaction: {w_P: 1}\n").find("'w_P' is less than 1") != std::string::npos);
+  CHECK(refused(ship + "  interaction: {C_2: 1 2 3}\n").find("'C_2' is one number, or two") != std::string::npos);
+  CHECK(refused(ship + "  interaction: {eta: .nan}\n") != "no complaint");
+  CHECK(refused(ship + "  rigid_coriolis: inside\n").find("is apart or among_coefficients") != std::string::npos);
+  CHECK(refused(ship + "  cruise: 5 kg\n").find("cruise") != std::string::npos);
   CHECK(refused("hydrodynamics:\n  model: abkowitz_3\n" + rest).find("state it as 'cruise'") != std::string::npos);
   CHECK(refused("hydrodynamics:\n" + rest + "  coefficients: {Y_vvv: 1}\n")
             .find("'Y_vvv' is no coefficient of gertler") != std::string::npos);
