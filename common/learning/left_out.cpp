@@ -45,6 +45,11 @@ std::vector<Stretch> stretches_of(const Problem& problem, const Leaving& leaving
 
 double last_part_of(const Problem& problem) { return problem.t_high - kLastPart * (problem.t_high - problem.t_low); }
 
+bool reads(const model::Feature& feature, model::Quantity quantity) {
+  return std::any_of(feature.factors.begin(), feature.factors.begin() + feature.count,
+                     [&](const model::Factor& factor) { return factor.quantity == quantity; });
+}
+
 /// The latest moment of a group, if it is a law.
 double begins(const model::FreeForce& force, const model::FeatureGroup& group) {
   double moment = std::numeric_limits<double>::lowest();
@@ -65,10 +70,8 @@ double stands_from(const Problem& problem, const model::FreeForce& force) {
   for (const model::FeatureGroup& group : force.groups) {
     if (begins(force, group) <= last_part_of(problem)) from = std::max(from, begins(force, group));
   }
-  const bool grows = std::ranges::any_of(force.features, [](const model::Feature& feature) {
-    return std::any_of(feature.factors.begin(), feature.factors.begin() + feature.count,
-                       [](const model::Factor& factor) { return factor.quantity == model::Quantity::kRamp; });
-  });
+  const bool grows = std::ranges::any_of(
+      force.features, [](const model::Feature& feature) { return reads(feature, model::Quantity::kRamp); });
   return grows ? last_part_of(problem) : from;
 }
 
@@ -101,7 +104,17 @@ Fit fitted_to(const Problem& rest, const Fit& with, int threads) {
   return likelihood::fit(rest, with.hypothesis, with.noise, options);
 }
 
-/// What swings, beyond what it was fitted to.
+/// Whether it goes on as a law of the clock where its recordings end.
+bool goes_on(const model::FreeForce& force) {
+  return model::swings(force) || std::ranges::any_of(force.groups, [&](const model::FeatureGroup& group) {
+           const auto first = force.features.begin() + group.first;
+           return group.closed && std::any_of(first, first + group.count, [](const model::Feature& feature) {
+                    return reads(feature, model::Quantity::kSettling);
+                  });
+         });
+}
+
+/// What swings or settles, beyond what it was fitted to.
 void foretell(const Problem& problem, std::span<const Trial> trials, const Fit& with, const Leaving& leaving,
               int threads, const Comparing& comparing, residual::Compared& standing) {
   const double from = last_part_of(problem);
@@ -125,11 +138,11 @@ void foretell(const Problem& problem, std::span<const Trial> trials, const Fit& 
 
 Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, const Fit& base, const Fit& with,
                          const model::Visited& visited, const Leaving& leaving, int threads, const Progress& progress) {
-  begin(progress, kLeftOut, leaving.folds + (model::swings(with.hypothesis.force) ? 1 : 0));
+  begin(progress, kLeftOut, leaving.folds + (goes_on(with.hypothesis.force) ? 1 : 0));
   const std::vector<Stretch> stretches = stretches_of(problem, leaving);
   const Comparing comparing{problem, base, visited, leaving};
   const double late = stands_from(problem, with.hypothesis.force);
-  const bool swings = model::swings(with.hypothesis.force);
+  const bool foretold = goes_on(with.hypothesis.force);
   Judged judged;
   for (int fold = 0; fold < leaving.folds; ++fold) {
     if (fold > 0) progress.done(kLeftOut.phase);
@@ -143,7 +156,7 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
         into.insert(into.end(), within.begin(), within.end());
       };
       take(stretch.from, windows);
-      if (stretch.to > late && !swings) take(std::max(stretch.from, late), late_windows);
+      if (stretch.to > late && !foretold) take(std::max(stretch.from, late), late_windows);
     }
     if (windows.empty()) continue;
     const Fit fitted = fitted_to(rest, with, threads);
@@ -154,7 +167,7 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
       comparing(fitted, standing_of(problem, fitted.hypothesis.force), late_windows, judged.standing);
   }
   progress.done(kLeftOut.phase);
-  if (swings) foretell(problem, trials, with, leaving, threads, comparing, judged.standing);
+  if (foretold) foretell(problem, trials, with, leaving, threads, comparing, judged.standing);
   progress.expect(kLeftOut.phase, 0);
   return judged;
 }

@@ -17,6 +17,7 @@ using likelihood::Quantity;
 
 constexpr int kDepthBumps = 6, kPlanBumps = 3, kTimeSteps = 12, kFewSteps = 4;
 constexpr std::array kEdgeReaches{1.0 / 30, 1.0 / 12, 1.0 / 5};  // of the width of where it was
+constexpr std::array kSettles{0.2, 0.7};                         // of the recordings: time constants to begin from
 constexpr double kSmallestRange = 0.05;                          // m
 
 Factor v(int axis) { return {.quantity = Quantity::kVelocity, .index = axis}; }
@@ -78,6 +79,27 @@ void of_columns(const likelihood::Problem& problem, std::vector<Modulator>& all)
   }
 }
 
+/// The supply's voltage, where it was logged and changes: thrust goes with a power of it.
+void of_voltage(const likelihood::Problem& problem, std::vector<Modulator>& all) {
+  constexpr double kSteady = 2e-3;  // of its mean: what the last digit of a log wanders
+  double sum = 0.0, samples = 0.0, square = 0.0, most = 0.0;
+  const auto each = [&](const auto& use) {
+    for (const likelihood::RunData& run : problem.runs) {
+      for (const double voltage : run.trial().voltage) {
+        if (voltage > 0.0) use(std::log(voltage));
+      }
+    }
+  };
+  each([&](double x) { sum += x, samples += 1.0; });
+  if (samples == 0.0) return;
+  const double mean = sum / samples;
+  each([&](double x) { square += (x - mean) * (x - mean), most = std::max(most, std::abs(x - mean)); });
+  const double spread = std::sqrt(square / samples);
+  if (spread < kSteady) return;
+  const Factor voltage{.quantity = Quantity::kVoltage, .a = std::exp(mean), .b = spread, .c = most};
+  all.push_back({", by the voltage", {{voltage}, {voltage, voltage}}, kThrustTerm | kThrusterTerm});
+}
+
 }  // namespace
 
 std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const model::Scene& scene) {
@@ -86,6 +108,14 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
   const double half = std::max(0.5 * (problem.t_high - problem.t_low), 1.0);
   const Factor ramp = of(Quantity::kRamp, 0, 0.5 * (problem.t_low + problem.t_high), half);
   all.push_back({", growing with time", {{ramp}}, still | base | kThrusterTerm | kMassTerm});
+  for (const double share : kSettles) {
+    Factor settling = of(Quantity::kSettling, 0, problem.t_low, share * (problem.t_high - problem.t_low));
+    settling.c = problem.t_low + model::kLawReach * (problem.t_high - problem.t_low);
+    all.push_back({.words = ", growing with time, ever more slowly",
+                   .columns = {{settling}},
+                   .of = still | base | kThrusterTerm | kMassTerm,
+                   .searched = true});
+  }
   all.push_back({", changing with time", steps_in_time(problem, kTimeSteps), kConstantTerm, false, true});
   all.push_back(
       {", changing with time", steps_in_time(problem, kFewSteps), kStreamTerm | base | kThrusterTerm, false, true});
@@ -138,6 +168,7 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
     all.push_back({", by |" + name + "|", {{s(j)}}, kThrustTerm | (j < 3 ? kThrusterTerm : 0U)});
   }
   of_columns(problem, all);
+  of_voltage(problem, all);
   for (int i = 0; i < problem.simulated; ++i) {
     const int j = problem.axes[static_cast<std::size_t>(i)];
     const std::string name = std::string{"tau_"} + model::kAxisNames[static_cast<std::size_t>(j)];

@@ -139,7 +139,8 @@ class Library {
         multiply(force, {.columns = {{}}}, true);
         multiply(water, {.columns = {{}}}, true);
         for (const Modulator& modulator : modulators) {
-          if (allows(modulator) && (modulator.of & kStreamTerm) != 0) multiply(water, modulator, true);
+          if (allows(modulator) && !modulator.searched && (modulator.of & kStreamTerm) != 0)
+            multiply(water, modulator, true);
         }
       }
     }

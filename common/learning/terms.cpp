@@ -27,12 +27,15 @@ Factor size(int axis) { return {.quantity = Quantity::kWrenchSize, .index = axis
 Factor f(int thruster) { return {.quantity = Quantity::kThruster, .index = thruster}; }
 Factor f_size(int thruster) { return {.quantity = Quantity::kThrusterSize, .index = thruster}; }
 
-/// How much an actuator has done lately.
-std::vector<Factor> uses(int thruster) {
-  std::vector<Factor> uses;
-  for (int bank = 0; bank < static_cast<int>(likelihood::kUseMemories.size()); ++bank)
-    uses.push_back({.quantity = Quantity::kRecentUse, .index = thruster, .bank = bank});
-  return uses;
+/// A force, by how much its actuator has done lately, and by the square of it: nothing weakens without an end.
+Columns worn(const Factor& force) {
+  Columns worn;
+  for (int bank = 0; bank < static_cast<int>(likelihood::kUseMemories.size()); ++bank) {
+    const Factor use{.quantity = Quantity::kRecentUse, .index = force.index, .bank = bank};
+    worn.push_back({force, use});
+    worn.push_back({force, use, use});
+  }
+  return worn;
 }
 
 class Terms {
@@ -149,9 +152,7 @@ class Terms {
       const std::string name = "thruster " + std::to_string(j + 1);
       const int axis = model::kThrusterLine + j;
       all.push_back({name, axis, {{f(j)}}, kThrusterTerm});
-      Columns worn;
-      for (const Factor& use : uses(j)) worn.push_back({f(j), use});
-      all.push_back({name + ", by what it has done lately", axis, worn});
+      all.push_back({name + ", by what it has done lately", axis, worn(f(j))});
       all.push_back({name + ", by its size", axis, {{f_size(j)}, {f_size(j), f(j)}}});
       for (int k = 0; k < thrusters_; ++k) {
         if (k != j)
@@ -181,9 +182,7 @@ class Terms {
     const auto law = [&](const char* words, Columns columns) {
       all.push_back({of.words + ", by " + words, of.axis, std::move(columns)});
     };
-    Columns worn;
-    for (const Factor& use : uses(of.index)) worn.push_back({own(Quantity::kThruster), use});
-    if (of.axis == model::kEachThruster) law("what each has done lately", worn);
+    if (of.axis == model::kEachThruster) law("what each has done lately", worn(own(Quantity::kThruster)));
     law("the size of the force", {{own(Quantity::kThrusterSize)}});
     law("the root of the force", {{own(Quantity::kThrusterRoot)}});
     const char* advance = "the speed of advance";

@@ -1,6 +1,6 @@
 // Numbers inside a factor that no weight can stand for, sought by what the force does when they change: the point and
 // the length of a line that pulls, the bearing and the reach of an edge, a place in the plan and how wide it is, the
-// size at which a thrust curve bends.
+// size at which a thrust curve bends, the time constant of what settles.
 #pragma once
 
 #include <vector>

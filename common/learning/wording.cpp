@@ -40,6 +40,7 @@ constexpr Hint kHints[]{
     {"thrust curve", "", "propellers, drivers or a limit of power whose curve is not that of the vehicle file"},
     {"thruster", "advance", "propellers that lose thrust as the craft moves"},
     {"thrust", "growing with time", "motors that warm, or a supply that sags"},
+    {"thrust", "voltage", "a supply whose voltage tells on thrust more, or less, than the vehicle file says"},
     {"thrust", "from a moment on", "damage, a reset or a changed setting at that moment"},
     {"thrust", "by", "flow into the thrusters that goes with the motion, or a supply that is shared"},
     {"thrusters", "done lately", "motors or drivers that warm with their work, or air that they draw"},
@@ -138,7 +139,7 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
   if (given.goes_on)
     sentence +=
         " A recording whose clock goes on after these is told what had begun or grown, as it stood at their end, and "
-        "what swings, in its phase.";
+        "what swings or settles, as it goes on.";
   if (given.left.empty()) return sentence;
   sentence += " What remains as a random force, share of the applied force:";
   for (const CorrectionLeft& left : given.left)

@@ -107,6 +107,7 @@ void Plant::show_features() {
   features_.heading_cosine = across > 0.0 ? motion_.R_WB(0, 0) / across : 1.0;
   features_.heading_sine = across > 0.0 ? motion_.R_WB(1, 0) / across : 0.0;
   features_.columns = motion_.columns;
+  features_.voltage = motion_.voltage;
   features_.force = force_;
   features_.tau = model_.allocation * force_;
   if (!free_.empty() && !free_moves_) free_still_ = free_.wrench(features_);

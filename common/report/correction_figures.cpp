@@ -37,6 +37,7 @@ void set_tau(FeatureState& s, int i, double x) { s.tau[i] = x; }
 void set_force(FeatureState& s, int i, double x) { s.force[i] = x; }
 void set_place(FeatureState& s, int i, double x) { s.p_WB[i] = x; }
 void set_time(FeatureState& s, int, double x) { s.t = x; }
+void set_voltage(FeatureState& s, int, double x) { s.voltage = x; }
 void set_heading(FeatureState& s, int, double x) {
   s.heading_cosine = std::cos(x);
   s.heading_sine = std::sin(x);
@@ -125,6 +126,12 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
       return Argument{.name = "psi", .unit = "rad", .low = -M_PI, .high = M_PI, .set = set_heading};
     case Quantity::kRamp:
       return Argument{.name = "t", .unit = "s", .low = f.a - f.b, .high = f.a + f.b, .set = set_time};
+    case Quantity::kSettling:
+      return Argument{
+          .name = "t", .unit = "s", .low = f.a, .high = f.a + (f.c - f.a) / model::kLawReach, .set = set_time};
+    case Quantity::kVoltage:
+      return Argument{
+          .name = "V", .unit = "V", .low = f.a * std::exp(-f.c), .high = f.a * std::exp(f.c), .set = set_voltage};
     case Quantity::kAfter:
       return Argument{
           .name = "t", .unit = "s", .low = f.a - 10.0 - 2.0 * f.b, .high = f.a + 10.0 + 2.0 * f.b, .set = set_time};

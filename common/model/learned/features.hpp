@@ -40,6 +40,7 @@ struct FeatureState {
   Eigen::Matrix<double, 6, 3> by_stream_rate{Eigen::Matrix<double, 6, 3>::Zero()};
   Vector6d by_mass{Vector6d::Zero()};  ///< m/s^2: what a mass at Bo holds back, -(v_dot + w x v)
   const Allocation* allocation{};      ///< tau = B f
+  double voltage{};                    ///< V, of the supply; 0: not logged
   std::span<const double> columns{};   ///< as Motion::columns
 };
 

@@ -81,6 +81,7 @@ FeatureState LearnedForm::state_of(const Motion& motion) const {
   state.tau = allocation_ * motion.force;
   state.allocation = &allocation_;
   state.columns = motion.columns;
+  state.voltage = motion.voltage;
   return state;
 }
 
@@ -236,8 +237,8 @@ FreeForce without_time(const FreeForce& force) {
 FreeForce lasting_of(const FreeForce& force) {
   return kept_of(force, [](const FeatureGroup& group, const Feature& feature) {
     return std::all_of(feature.factors.begin(), feature.factors.begin() + feature.count, [&](const Factor& factor) {
-      return !kind_of(factor.quantity).in_time || factor.quantity == Quantity::kRamp ||
-             (group.closed && factor.quantity == Quantity::kAfter);
+      const FactorKind& kind = kind_of(factor.quantity);
+      return !kind.in_time || kind.grows || (group.closed && factor.quantity == Quantity::kAfter);
     });
   });
 }
@@ -277,7 +278,7 @@ FreeForce as_it_stands(const FreeForce& force, double t) {
   return kept_of(rest, [](const FeatureGroup& group, const Feature& feature) {
     return std::all_of(feature.factors.begin(), feature.factors.begin() + feature.count, [&](const Factor& factor) {
       const FactorKind& kind = kind_of(factor.quantity);
-      return !kind.in_time || (group.closed && kind.rate != nullptr);
+      return !kind.in_time || (group.closed && (kind.rate != nullptr || kind.grows));
     });
   });
 }

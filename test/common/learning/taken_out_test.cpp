@@ -174,3 +174,46 @@ TEST_CASE("taken out: drag that grows toward a wall is learned as drag near an e
   CHECK(learned.given.held_out_carried < 0.6);
   CHECK(over_base < 0.75);  // the rest of the dive comes seldom so near
 }
+
+TEST_CASE("taken out: thrust that goes with the voltage is learned as that, and told to who logs it") {
+  const auto sags = [](double t) { return 15.5 + 1.2 * std::sin(0.17 * t) - 0.004 * t; };  // V: load and use
+  const test::LearnedCase dive{
+      {.duration = 160.0,
+       .seed = 11,
+       .force = 0.01,
+       .effects = {{.effect = model::find_effect("battery_sag"), .variant = 0, .theta = {2.0}}},
+       .voltage = sags},
+      true,
+      0.5};
+  const Learned learned = dive.learned();
+  test::show("voltage", learned.given);
+  REQUIRE(learned.given.adopted);
+  REQUIRE(learned.given.carried);
+  CHECK(learned.given.words.find("the whole thrust, by the voltage") != std::string::npos);
+  const double over_truth = over(dive.dive.truth, dive, learned, learned.elsewhere);
+  MESSAGE("voltage: " << over_truth << " of the truth's");
+  CHECK(over_truth < 1.3);
+}
+
+TEST_CASE("taken out: a force that settles is learned with its time constant") {
+  constexpr double kEnd = 0.5, kWithin = 30.0;  // m/s^2, s
+  const auto fills = [](double t, const Vector6d&) {
+    Vector6d nu_dot = Vector6d::Zero();
+    nu_dot[2] = kEnd * -std::expm1(-t / kWithin);
+    return nu_dot;
+  };
+  const test::LearnedCase dive{{.duration = 120.0, .seed = 11, .force = 0.01, .outside = fills}};
+  const Learned learned = dive.learned();
+  test::show("settling", learned.given);
+  REQUIRE(learned.given.adopted);
+  REQUIRE(learned.given.carried);
+  CHECK(learned.given.words.find("growing with time, ever more slowly") != std::string::npos);
+  CHECK(learned.given.goes_on);
+  CHECK(learned.given.held_out_carried < 0.3);
+  const auto& factors = learned.given.terms.front().factors;
+  const auto settling = std::ranges::find_if(factors, [](const CorrectionFactor& factor) {
+    return factor.quantity == model::word(model::Quantity::kSettling);
+  });
+  REQUIRE(settling != factors.end());
+  CHECK(settling->b == doctest::Approx(kWithin).epsilon(0.3));
+}

@@ -49,6 +49,10 @@ TEST_CASE("within factor: an edge that turns is where the box ends, and no reach
   settle(bend, room);
   CHECK(bend.a > 0.0);
   CHECK(inner_of(bend, room).size() == 1);
+  Factor slow{.quantity = Quantity::kSettling, .b = 1e6};
+  settle(slow, room);
+  CHECK(slow.b == doctest::Approx(4.0 * room.half[0]));  // slower is a straight line
+  CHECK(inner_of(slow, room).size() == 1);
   CHECK_FALSE(has_inner({.quantity = Quantity::kDepth}));
 }
 

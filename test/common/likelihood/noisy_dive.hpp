@@ -21,6 +21,7 @@ struct NoisyDive {
   std::vector<model::ActiveEffect> effects{};
   std::function<double(double t, std::mt19937&)> sensor_factor{};   // of each sensor number, where noise varies
   std::function<Vector6d(double t, const Vector6d& nu)> outside{};  // acceleration that no model holds
+  std::function<double(double t)> voltage{};                        // V; none: no battery
 };
 
 inline VirtualDive fly(const model::Vehicle& vehicle, const NoisyDive& settings) {
@@ -46,6 +47,7 @@ inline VirtualDive fly(const model::Vehicle& vehicle, const NoisyDive& settings)
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   std::vector<double> memory(static_cast<std::size_t>(dive.truth.memory_size()), 0.0);
   for (std::size_t k = 0; k < trial.size(); ++k) {
+    if (settings.voltage) trial.voltage[k] = settings.voltage(trial.t[k]);
     trial.p_WB[k] = p;
     trial.q_WB[k] = q;
     Vector6d noise = settings.sensor * gauss();
@@ -64,6 +66,7 @@ inline VirtualDive fly(const model::Vehicle& vehicle, const NoisyDive& settings)
         motion.R_WB = q.toRotationMatrix();
         motion.nu = at;
         motion.vehicle = &vehicle;
+        if (settings.voltage) motion.voltage = settings.voltage(t);
         motion.input = &input;
         input.now(t, motion.force);
         model::feel(dive.truth, motion, memory, advance ? h : 0.0);

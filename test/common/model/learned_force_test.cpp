@@ -191,6 +191,42 @@ TEST_CASE("factors: every kind has a name of its own, words and a value") {
   CHECK_FALSE(quantity_from("no such thing"));
 }
 
+TEST_CASE("factors: a voltage that was not logged, or is its mean, changes nothing, and fades where it never was") {
+  const Factor voltage{.quantity = Quantity::kVoltage, .a = 16.0, .b = 0.05, .c = 0.1};
+  const FactorKind& kind = kind_of(Quantity::kVoltage);
+  const Visited visited;
+  FeatureState state;
+  CHECK(kind.value(voltage, state) == 0.0);
+  CHECK(kind.within(voltage, state, visited) == 1.0);
+  state.voltage = 16.0;
+  CHECK(kind.value(voltage, state) == 0.0);
+  state.voltage = 16.0 * std::exp(0.05);
+  CHECK(kind.value(voltage, state) == doctest::Approx(1.0));
+  CHECK(kind.within(voltage, state, visited) == 1.0);
+  state.voltage = 16.0 * std::exp(0.19);
+  CHECK(kind.within(voltage, state, visited) == 1.0);  // a law is believed as far again
+  state.voltage = 8.0;
+  CHECK(kind.within(voltage, state, visited) < 1e-3);
+}
+
+TEST_CASE("factors: what settles begins at nothing, slows down, and goes on with its clock as far as it is believed") {
+  const Factor settling{.quantity = Quantity::kSettling, .a = 10.0, .b = 20.0, .c = 50.0};
+  const FactorKind& kind = kind_of(Quantity::kSettling);
+  const auto at = [&](double t) { return kind.value(settling, FeatureState{.t = t}); };
+  CHECK(at(0.0) == 0.0);
+  CHECK(at(30.0) == doctest::Approx(1.0 - std::exp(-1.0)));
+  CHECK(at(50.0) == doctest::Approx(1.0 - std::exp(-2.0)));
+  CHECK(at(1e6) == at(50.0));
+  FreeForce force;
+  force.features = {along(0, {settling})};
+  force.weights = {2.0};
+  force.groups = {{.kind = "test", .axis = 0, .first = 0, .count = 1, .closed = true}};
+  CHECK(lasting_of(force).weights == force.weights);  // of its own run, like a ramp
+  const FreeForce later = as_it_stands(force, 50.0);
+  REQUIRE(later.features.size() == 1);
+  CHECK(later.features.front().value({.t = 30.0}) == doctest::Approx(at(30.0)));  // on the clock that goes on
+}
+
 TEST_CASE("factors: nearness is 1 at an edge, falls by e per reach, doubles beyond, and fades a reach away") {
   FeatureState state;
   state.p_WB = {3.0, 4.0, 1.5};

@@ -1,5 +1,5 @@
 // Factors that read the clock: what of them another run is told, lasting_of and as_it_stands say. A ramp ends where its
-// recording did.
+// recording did, what settles is believed as far again.
 #include "common/model/learned/factors/factor_kind.hpp"
 
 namespace fathom::model {
@@ -45,8 +45,22 @@ constinit const FactorKind factor_ramp{
     .sentence = "time",
     .unit = "1",
     .in_time = true,
+    .grows = true,
     .value = [](const Factor& f, const FeatureState& s) { return std::clamp((s.t - f.a) / f.b, -1.0, 1.0); },
     .words = [](const Factor& f) { return "(t - " + brief_number(f.a) + " s) / " + brief_number(f.b) + " s"; }};
+
+/// What goes to an end at a rate that falls with the way that is left: from `a` [s], within `b` [s], believed until
+/// `c`.
+constinit const FactorKind factor_settling{
+    .word = "settling",
+    .sentence = "time, ever more slowly",
+    .unit = "1",
+    .in_time = true,
+    .grows = true,
+    .value = [](const Factor& f,
+                const FeatureState& s) { return -std::expm1(-std::max(std::min(s.t, f.c) - f.a, 0.0) / f.b); },
+    .words =
+        [](const Factor& f) { return "(1 - exp(-(t - " + brief_number(f.a) + " s) / " + brief_number(f.b) + " s))"; }};
 
 constinit const FactorKind factor_tone_cosine{
     .word = "tone_cosine",

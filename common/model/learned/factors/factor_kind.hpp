@@ -23,6 +23,7 @@ struct FactorKind {
   int banks{};           ///< low passes that it may read
   bool moves{false};     ///< it goes with the velocity
   bool in_time{false};   ///< it goes with the clock: another run is another time
+  bool grows{false};     ///< with the clock, and stays what it has become
   bool of_point{false};  ///< a, b and c are a point in W, m, and no widths
   double (*value)(const Factor&, const FeatureState&){};
   /// Its rate with the clock alone, 1/s: what swings has one, so that water that swings has an acceleration. A moment
