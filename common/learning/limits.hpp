@@ -13,6 +13,7 @@ struct Limits {
   double judged{1.02};  ///< most of the error on runs that judge over the model's without it: less is chance
   double sure{1.3};     ///< standard errors by which the logarithm of that ratio lies below 0: one-sided 90 %
   double form{10.0};    ///< nats by which a closed form may lie below the table of features that it replaces
+  double swings{10.0};  ///< nats by which swings must be worth more than what lasts alone to be asked with it at once
   int fewest_windows{4};
   int most_groups{8};  ///< of products: more has never held on a new recording
   int rounds{

@@ -86,17 +86,20 @@ void of_voltage(const likelihood::Problem& problem, std::vector<Modulator>& all)
   const auto each = [&](const auto& use) {
     for (const likelihood::RunData& run : problem.runs) {
       for (const double voltage : run.trial().voltage) {
-        if (voltage > 0.0) use(std::log(voltage));
+        if (voltage > 0.0) use(voltage);
       }
     }
   };
-  each([&](double x) { sum += x, samples += 1.0; });
+  each([&](double V) { sum += V, samples += 1.0; });
   if (samples == 0.0) return;
   const double mean = sum / samples;
-  each([&](double x) { square += (x - mean) * (x - mean), most = std::max(most, std::abs(x - mean)); });
+  each([&](double V) {
+    square += std::pow(V / mean - 1.0, 2);
+    most = std::max(most, std::abs(V / mean - 1.0));
+  });
   const double spread = std::sqrt(square / samples);
   if (spread < kSteady) return;
-  const Factor voltage{.quantity = Quantity::kVoltage, .a = std::exp(mean), .b = spread, .c = most};
+  const Factor voltage{.quantity = Quantity::kVoltage, .a = mean, .b = spread, .c = most};
   all.push_back({", by the voltage", {{voltage}, {voltage, voltage}}, kThrustTerm | kThrusterTerm});
 }
 

@@ -55,37 +55,18 @@ class Seeker {
       if (!first) again = seen(found.fit);
       const Seen& now = again ? *again : seen_;
       const Picked picked = pick(now, first, clock);
-      if (picked.force.empty()) continue;
-      // What the random force has swallowed shows where it is smaller.
-      std::optional<Picked> quiet;
-      if (first && swallows(now)) {
-        likelihood::Fit quick = now.fit;
-        quick.noise = quickened(now);
-        quiet = pick(seen(std::move(quick)), true, clock);
-      }
-      const bool settled = !first || picked.log_odds >= kSettled * thresholds_.free_force_odds;
-      std::vector<likelihood::Fit> fits(quiet || !settled ? 2 : 1);
-      for_each_index(fits.size(), threads_, [&](std::size_t start) {
-        likelihood::Noise noise = now.fit.noise;
-        if (start > 0 && quiet) {
-          noise = quickened(now);
-        } else if (start > 0) {
-          for (likelihood::AxisNoise& axis : noise) axis.log[likelihood::kForce] -= std::log(kFactor);
+      // What swings is imitated by places and depths that come again and again: where a swing is worth more than all of
+      // them, what lasts does not go first.
+      if (clock == Clock::kLasting) {
+        const Picked swinging = pick(now, first, Clock::kSwings);
+        if (swinging.log_odds > picked.log_odds + limits_.swings &&
+            take(swinging, now, first, Clock::kSwings, found, evidence)) {
+          double alone = seen_.fit.log_evidence;
+          take(picked, now, first, clock, sought.lasting, alone);
+          continue;
         }
-        fits[start] = fitted(now.fit.hypothesis, start > 0 && quiet ? quiet->force : picked.force, noise,
-                             fits.size() == 1 ? threads_ : 1);
-      });
-      const likelihood::Fit* best = nullptr;
-      for (const likelihood::Fit& fit : fits) {
-        if (fit.finite && (best == nullptr || worth(fit) > worth(*best))) best = &fit;
       }
-      // What the screen promises and no fit keeps is not found.
-      const double gained = best == nullptr ? 0.0 : worth(*best) - evidence;
-      if (gained < thresholds_.group_gain) continue;
-      if (first) found.at_fixed_noise = picked.log_odds;
-      found.fit = with_inner_numbers(problem_, *best, threads_);
-      evidence = worth(found.fit);
-      if (clock == Clock::kLasting) sought.lasting = found;
+      if (take(picked, now, first, clock, found, evidence) && clock == Clock::kLasting) sought.lasting = found;
     }
     for (FreeForceFound* each : {&sought.all, &sought.lasting}) {
       if (!each->fit.finite) continue;
@@ -128,6 +109,41 @@ class Seeker {
   [[nodiscard]] std::size_t room_beside(const likelihood::Fit& fit) const {
     return static_cast<std::size_t>(
         std::max(0, limits_.most_groups - static_cast<int>(fit.hypothesis.force.groups.size())));
+  }
+
+  /// Fits what was picked; true where the fit keeps what the screen promised, and then it is what was found.
+  bool take(const Picked& picked, const Seen& now, bool first, Clock clock, FreeForceFound& found, double& evidence) {
+    if (picked.force.empty()) return false;
+    // What the random force has swallowed shows where it is smaller.
+    std::optional<Picked> quiet;
+    if (first && swallows(now)) {
+      likelihood::Fit quick = now.fit;
+      quick.noise = quickened(now);
+      quiet = pick(seen(std::move(quick)), true, clock);
+    }
+    const bool settled = !first || picked.log_odds >= kSettled * thresholds_.free_force_odds;
+    std::vector<likelihood::Fit> fits(quiet || !settled ? 2 : 1);
+    for_each_index(fits.size(), threads_, [&](std::size_t start) {
+      likelihood::Noise noise = now.fit.noise;
+      if (start > 0 && quiet) {
+        noise = quickened(now);
+      } else if (start > 0) {
+        for (likelihood::AxisNoise& axis : noise) axis.log[likelihood::kForce] -= std::log(kFactor);
+      }
+      fits[start] = fitted(now.fit.hypothesis, start > 0 && quiet ? quiet->force : picked.force, noise,
+                           fits.size() == 1 ? threads_ : 1);
+    });
+    const likelihood::Fit* best = nullptr;
+    for (const likelihood::Fit& fit : fits) {
+      if (fit.finite && (best == nullptr || worth(fit) > worth(*best))) best = &fit;
+    }
+    // What the screen promises and no fit keeps is not found.
+    const double gained = best == nullptr ? 0.0 : worth(*best) - evidence;
+    if (gained < thresholds_.group_gain) return false;
+    if (first) found.at_fixed_noise = picked.log_odds;
+    found.fit = with_inner_numbers(problem_, *best, threads_);
+    evidence = worth(found.fit);
+    return true;
   }
 
   /// A random force of practical size that remembers for long may have taken something slow for its own.

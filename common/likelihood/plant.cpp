@@ -88,7 +88,7 @@ void Plant::begin(const Vector6d& nu) {
   for (auto& slow : features_.slow_nu) slow = motion_.nu_r();
   const Vector6d tau = model_.allocation * forces_.col(0);
   for (auto& slow : features_.slow_tau) slow = tau;
-  for (auto& use : features_.use) use = forces_.col(0).cwiseAbs();
+  for (auto& use : features_.use) use.setZero(forces_.rows());  // rested, as far as anyone knows
 }
 
 void Plant::at_substep(std::size_t interval, int substep) {

@@ -48,6 +48,8 @@ class InputSignal {
   /// The same as it was `later` seconds before: the mean over the time that now() has one force for, so that no jump is
   /// lost between the instants that are asked for.
   void ago(double t, double later, ActuatorForces& force) const;
+  /// When the first sample holds, s.
+  [[nodiscard]] double begins() const { return t0_; }
   /// By how much the force changes over a step of the grid about t, jumps apart [N].
   void change(double t, ActuatorForces& difference) const;
 

@@ -131,7 +131,7 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
           .name = "t", .unit = "s", .low = f.a, .high = f.a + (f.c - f.a) / model::kLawReach, .set = set_time};
     case Quantity::kVoltage:
       return Argument{
-          .name = "V", .unit = "V", .low = f.a * std::exp(-f.c), .high = f.a * std::exp(f.c), .set = set_voltage};
+          .name = "V", .unit = "V", .low = f.a * (1.0 - f.c), .high = f.a * (1.0 + f.c), .set = set_voltage};
     case Quantity::kAfter:
       return Argument{
           .name = "t", .unit = "s", .low = f.a - 10.0 - 2.0 * f.b, .high = f.a + 10.0 + 2.0 * f.b, .set = set_time};

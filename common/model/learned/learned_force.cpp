@@ -178,7 +178,8 @@ void LearnedForm::settle(const Motion& motion, EffectTheta, std::span<double> z)
   Eigen::Map<Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
   memory.leftCols<kTaps>().colwise() = Vector6d{allocation_ * motion.force};
   memory.rightCols<kSlow>().colwise() = motion.nu_r();
-  // What was done before is on record, as it was commanded; no run-in is as long as these memories.
+  // What was done before is on record, as it was commanded; no run-in is as long as these memories. Before the record
+  // begins they have rested: as much as they do at its first instant they hardly did all the time.
   ActuatorForces then = motion.force;
   for (std::size_t b = 0; b < kUseMemories.size(); ++b) {
     auto use = use_in(z, allocation_.cols(), b);
@@ -186,7 +187,9 @@ void LearnedForm::settle(const Motion& motion, EffectTheta, std::span<double> z)
     if (motion.input == nullptr) continue;
     const double dt = kPastReach * kUseMemories[b] / kPast, share = -std::expm1(-dt / kUseMemories[b]);
     for (int k = kPast; k > 0; --k) {
-      motion.input->at(motion.t - (k - 0.5) * dt, then);
+      const double t = motion.t - (k - 0.5) * dt;
+      motion.input->at(t, then);
+      if (t < motion.input->begins()) then.setZero();
       if (k == kPast) use = then.cwiseAbs();
       use += share * (then.cwiseAbs() - use);
     }
