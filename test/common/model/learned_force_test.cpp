@@ -212,7 +212,7 @@ TEST_CASE("factors: a voltage that was not logged, or is its mean, changes nothi
   CHECK(kind.within(voltage, state, visited) == 1.0);
   state.voltage = 16.0 * 1.19;
   CHECK(kind.within(voltage, state, visited) == 1.0);  // a law is believed as far again
-  state.voltage = 8.0;
+  state.voltage = 4.0;
   CHECK(kind.within(voltage, state, visited) < 1e-3);
 }
 
