@@ -1,9 +1,7 @@
-// What is sought on stretches of a long recording is what all of it has, and what swings need not wait.
+// What is sought on stretches of a long recording is what all of it has.
 #include "common/learning/seek_force.hpp"
 
 #include <doctest/doctest.h>
-
-#include <cmath>
 
 #include "test/common/learning/learned_case.hpp"
 
@@ -37,21 +35,4 @@ TEST_CASE("seek force: on stretches of a recording, with the weights and the odd
   CHECK(few.fit.scored == whole.fit.scored);
   CHECK(few.fit.hypothesis.runs.size() == 1);
   CHECK(few.log_odds > 0.9 * whole.log_odds);
-}
-
-TEST_CASE("seek force: what swings goes at once where it is worth more than all that lasts") {
-  const auto pumps = [](double t, const Vector6d&) {
-    Vector6d nu_dot = Vector6d::Zero();
-    nu_dot[2] = 0.2 * std::sin(0.25 * t);  // m/s^2
-    return nu_dot;
-  };
-  const test::LearnedCase dive{{.duration = 160.0, .seed = 3, .force = 0.01, .outside = pumps}, false};
-  const model::Scene scene = model::scene_of(test::bluerov(), {&dive.trial, 1});
-  const learning::Sought sought =
-      learning::seek_force(dive.problem, dive.conclusion.found.best.fit, scene, {}, 2, {}, std::nullopt);
-  REQUIRE(sought.all.fit.finite);
-  REQUIRE_FALSE(sought.all.groups.empty());
-  CHECK(sought.all.groups.front().kind.find("a swing") != std::string::npos);
-  // The swing, and not what places and depths have in its stead.
-  CHECK(sought.all.fit.hypothesis.force.groups.size() <= 3);
 }

@@ -208,7 +208,6 @@ TEST_CASE("taken out: a force that settles is learned with its time constant") {
   REQUIRE(learned.given.adopted);
   REQUIRE(learned.given.carried);
   CHECK(learned.given.words.find("growing with time, ever more slowly") != std::string::npos);
-  CHECK(learned.given.goes_on);
   CHECK(learned.given.held_out_carried < 0.3);
   const auto& factors = learned.given.terms.front().factors;
   const auto settling = std::ranges::find_if(factors, [](const CorrectionFactor& factor) {
