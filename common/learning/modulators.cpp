@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "common/learning/edges.hpp"
@@ -49,31 +50,44 @@ Columns bumps_over_plan(const model::Scene& scene) {
   return bumps;
 }
 
+/// What a measured number does over all recordings: its mean, its root mean square off it, and the most.
+struct Wander {
+  double mean{}, spread{}, most{};
+};
+/// `each` hands every sample to what it is given; none: nothing was measured.
+template <typename Each>
+std::optional<Wander> wander_of(const Each& each) {
+  double sum = 0.0, square = 0.0, samples = 0.0;
+  each([&](double x) { sum += x, samples += 1.0; });
+  if (samples == 0.0) return std::nullopt;
+  Wander wander{.mean = sum / samples};
+  each([&](double x) {
+    square += (x - wander.mean) * (x - wander.mean);
+    wander.most = std::max(wander.most, std::abs(x - wander.mean));
+  });
+  wander.spread = std::sqrt(square / samples);
+  return wander;
+}
+
 /// Measured columns, about their means and over their spreads, as modulators.
 void of_columns(const likelihood::Problem& problem, std::vector<Modulator>& all) {
   constexpr double kConstant = 1e-6;  // of its mean
   const std::size_t count = problem.vehicle->candidates.size();
   for (std::size_t place = 0; place < count; ++place) {
     const auto at = static_cast<Eigen::Index>(2 * place);
-    double sum = 0.0, square = 0.0, samples = 0.0, most = 0.0;
-    const auto each = [&](const auto& use) {
+    const auto wander = wander_of([&](const auto& use) {
       for (const likelihood::RunData& run : problem.runs) {
         for (const Eigen::VectorXd& columns : run.trial().columns) use(columns[at]);
       }
-    };
-    each([&](double x) { sum += x, samples += 1.0; });
-    if (samples == 0.0) continue;
-    const double mean = sum / samples;
-    each([&](double x) { square += (x - mean) * (x - mean), most = std::max(most, std::abs(x - mean)); });
-    const double spread = std::sqrt(square / samples);
-    if (spread <= kConstant * std::abs(mean)) continue;
+    });
+    if (!wander || wander->spread <= kConstant * std::abs(wander->mean)) continue;
     const std::string& name = problem.vehicle->candidates[place].text;
     all.push_back({", by " + name,
                    {{{.quantity = Quantity::kColumn,
                       .index = static_cast<int>(place),
-                      .a = mean,
-                      .b = spread,
-                      .c = most,
+                      .a = wander->mean,
+                      .b = wander->spread,
+                      .c = wander->most,
                       .column = name}}},
                    kConstantTerm | kStreamTerm | kDragTerm | kThrustTerm | kThrusterTerm});
   }
@@ -82,24 +96,18 @@ void of_columns(const likelihood::Problem& problem, std::vector<Modulator>& all)
 /// The supply's voltage, where it was logged and changes: thrust goes with a power of it.
 void of_voltage(const likelihood::Problem& problem, std::vector<Modulator>& all) {
   constexpr double kSteady = 2e-3;  // of its mean: what the last digit of a log wanders
-  double sum = 0.0, samples = 0.0, square = 0.0, most = 0.0;
-  const auto each = [&](const auto& use) {
+  const auto wander = wander_of([&](const auto& use) {
     for (const likelihood::RunData& run : problem.runs) {
       for (const double voltage : run.trial().voltage) {
         if (voltage > 0.0) use(voltage);
       }
     }
-  };
-  each([&](double V) { sum += V, samples += 1.0; });
-  if (samples == 0.0) return;
-  const double mean = sum / samples;
-  each([&](double V) {
-    square += std::pow(V / mean - 1.0, 2);
-    most = std::max(most, std::abs(V / mean - 1.0));
   });
-  const double spread = std::sqrt(square / samples);
-  if (spread < kSteady) return;
-  const Factor voltage{.quantity = Quantity::kVoltage, .a = mean, .b = spread, .c = most};
+  if (!wander || wander->spread < kSteady * wander->mean) return;
+  const Factor voltage{.quantity = Quantity::kVoltage,
+                       .a = wander->mean,
+                       .b = wander->spread / wander->mean,
+                       .c = wander->most / wander->mean};
   all.push_back({", by the voltage", {{voltage}, {voltage, voltage}}, kThrustTerm | kThrusterTerm});
 }
 
