@@ -20,6 +20,8 @@ using model::Quantity;
 constexpr int kPoints = 61;
 constexpr double kInside = 0.95;  // of what was visited: no picture shows how it fades
 constexpr int kWidth = 360, kHeight = 220;
+constexpr std::size_t kTitleFits = 52;          // letters of the usual size
+constexpr int kTitleFont = 12, kLeastFont = 8;  // points
 
 /// What a feature reads: a state's number, and the range to be shown.
 struct Argument {
@@ -255,10 +257,12 @@ Figure draw_correction(const CorrectionCurve& curve, const std::vector<double>& 
   }
   figure.script = data("band", {curve.x, low, high}) + data("force", {curve.x, curve.force});
   if (!truth.empty()) figure.script += data("truth", {curve.x, truth});
-  figure.script += "set label 100 " + quoted(curve.title) +
-                   " at graph 0, graph 1 left offset -4, 0.8 textcolor rgb '#22262b'\nset xlabel " +
-                   quoted(curve.argument + " [" + curve.unit + "]") + " textcolor rgb '#22262b'\nset xrange [" +
-                   plain(curve.x.front()) + ":" + plain(curve.x.back()) +
+  const int smaller = static_cast<int>(kTitleFont * kTitleFits / std::max(curve.title.size(), kTitleFits));
+  figure.script += "set label 100 " + quoted(curve.title) + " at graph 0, graph 1 left offset -4, 0.8 font '," +
+                   std::to_string(std::max(smaller, kLeastFont)) + "' textcolor rgb '#22262b'\nset xlabel " +
+                   quoted(curve.argument + " [" + curve.unit + "]") +
+                   " offset 0, 0.6 textcolor rgb '#22262b'\nset xrange [" + plain(curve.x.front()) + ":" +
+                   plain(curve.x.back()) +
                    "]\nset xtics autofreq\nset ytics autofreq\nset xzeroaxis lt 1 lc rgb '#b8bec7' lw 1\n"
                    "plot $band u 1:2:3 w filledcurves lc rgb '#cfe0ef', $force w l lc rgb '#0a5ea8' lw 1.8" +
                    (truth.empty() ? "" : ", $truth w l dt 2 lc rgb '#22262b' lw 1.4") + "\n";

@@ -224,6 +224,8 @@ TEST_CASE("factors: what settles begins at nothing, slows down, and goes on with
   CHECK(at(30.0) == doctest::Approx(1.0 - std::exp(-1.0)));
   CHECK(at(50.0) == doctest::Approx(1.0 - std::exp(-2.0)));
   CHECK(at(1e6) == at(50.0));
+  CHECK(kind.words(settling) == "(1 - exp(-(t - 10 s) / 20 s))");
+  CHECK(kind.words({.quantity = Quantity::kSettling, .b = 20.0}) == "(1 - exp(-t / 20 s))");
   FreeForce force;
   force.features = {along(0, {settling})};
   force.weights = {2.0};

@@ -60,7 +60,10 @@ constinit const FactorKind factor_settling{
     .value = [](const Factor& f,
                 const FeatureState& s) { return -std::expm1(-std::max(std::min(s.t, f.c) - f.a, 0.0) / f.b); },
     .words =
-        [](const Factor& f) { return "(1 - exp(-(t - " + brief_number(f.a) + " s) / " + brief_number(f.b) + " s))"; }};
+        [](const Factor& f) {
+          const std::string since = f.a == 0.0 ? "t" : "(t - " + brief_number(f.a) + " s)";
+          return "(1 - exp(-" + since + " / " + brief_number(f.b) + " s))";
+        }};
 
 constinit const FactorKind factor_tone_cosine{
     .word = "tone_cosine",
